@@ -1,0 +1,52 @@
+# Build settings shared by every target, and one function a kind of target.
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/bin")
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release)
+endif()
+
+find_program(ANATOMESH_CCACHE ccache)
+if(ANATOMESH_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${ANATOMESH_CCACHE}")
+endif()
+
+# Results must not depend on the optimiser: no fused multiply-add contraction across expressions.
+add_library(anatomesh_settings INTERFACE)
+target_compile_options(anatomesh_settings INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -ffp-contract=off
+  $<$<BOOL:${ANATOMESH_WARNINGS_AS_ERRORS}>:-Werror>)
+if(ANATOMESH_SANITIZE)
+  target_compile_options(anatomesh_settings INTERFACE
+    -fsanitize=${ANATOMESH_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(anatomesh_settings INTERFACE -fsanitize=${ANATOMESH_SANITIZE})
+endif()
+
+# anatomesh_add_floor(NAME SOURCES ... DEPENDS ... PRIVATE_DEPENDS ...)
+# One static library a folder of src/; DEPENDS are the folders below that it may include.
+function(anatomesh_add_floor name)
+  cmake_parse_arguments(A "" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
+  add_library(anatomesh_${name} STATIC ${A_SOURCES})
+  add_library(anatomesh::${name} ALIAS anatomesh_${name})
+  target_include_directories(anatomesh_${name} PUBLIC
+    "${PROJECT_SOURCE_DIR}/include" "${PROJECT_SOURCE_DIR}/src")
+  target_link_libraries(anatomesh_${name} PUBLIC ${A_DEPENDS}
+    PRIVATE anatomesh_settings ${A_PRIVATE_DEPENDS})
+endfunction()
+
+# anatomesh_add_test(NAME SOURCES ... DEPENDS ... [TIMEOUT seconds])
+# One GoogleTest program a tested folder, each case a ctest case.
+function(anatomesh_add_test name)
+  cmake_parse_arguments(A "" "TIMEOUT" "SOURCES;DEPENDS" ${ARGN})
+  add_executable(test_${name} ${A_SOURCES})
+  target_link_libraries(test_${name} PRIVATE
+    anatomesh_settings ${A_DEPENDS} anatomesh_test_support GTest::gtest_main)
+  if(NOT A_TIMEOUT)
+    set(A_TIMEOUT 600)
+  endif()
+  gtest_discover_tests(test_${name} TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 120
+    PROPERTIES TIMEOUT ${A_TIMEOUT})
+endfunction()

@@ -1,0 +1,50 @@
+// Every option of the mesher. The command line, Python, Slicer and SOFA carry the same names.
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "anatomesh/types.h"
+
+namespace anatomesh {
+
+/// How the boundary's edge points are thinned: no two chosen ones may touch at a vertex, edge or face
+/// of their voxels (26, 18, 6 neighbours); none keeps all (Drakopoulos and Chrisochoides, Table 2).
+enum class NonConnectivity { vertex, edge, face, none };
+
+/// Linear-elastic material of a tissue in the registration. Only ratios of moduli matter to the mesh.
+struct Material {
+  double young_modulus_pa = 3000;  ///< > 0
+  double poisson_ratio = 0.45;     ///< >= 0, < 0.5
+};
+
+/// Stage "lattice": the body-centred cubic lattice and its refinement.
+struct LatticeOptions {
+  double bcc_size_mm = 0;  ///< spacing of the coarsest lattice, > 0; 0: 8 times the mean voxel spacing
+  double min_size_mm = 0;  ///< smallest lattice spacing that fidelity may ask for, > 0; 0: a quarter of bcc_size
+  double fidelity = 0.95;  ///< 0 < F <= 1: F1 and F2 that each tissue is refined for
+  std::map<Label, double> fidelity_label;  ///< F of single tissues, in place of the above
+};
+
+/// Stage "deform": registration onto the boundary, angle guard, settling.
+struct DeformOptions {
+  NonConnectivity non_connectivity = NonConnectivity::face;
+  int iterations = 10;                 ///< >= 0; 0 keeps the lattice
+  double min_dihedral_deg = 15;        ///< 0 to 30
+  double max_dihedral_deg = 155;       ///< 117 to 180
+  double min_mean_ratio = 0.3;         ///< 0 to 0.5; 12 (3 V)^(2/3) / sum of squared edges, 1: regular
+  std::map<Label, Material> material;  ///< of single tissues; the rest takes default_material
+  Material default_material;
+};
+
+/// All options of image_to_mesh().
+struct Options {
+  LatticeOptions lattice;
+  DeformOptions deform;
+  std::vector<Label> labels;  ///< mesh these only, the rest is background; empty: all
+  Frame frame = Frame::lps;   ///< space of the resulting mesh
+  int threads = 0;            ///< >= 0; 0: all cores. The result does not depend on it
+  double max_memory_gib = 0;  ///< refuse to start above this; >= 0; 0: the memory this machine has free
+};
+
+}  // namespace anatomesh

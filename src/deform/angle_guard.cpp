@@ -1,0 +1,93 @@
+#include "deform/angle_guard.h"
+
+#include "base/parallel.h"
+
+namespace anatomesh {
+namespace {
+
+constexpr ShapeBounds kCushionBounds = {1, -1, 0.05};
+
+std::array<Vec3, 4> corners_with(const TissueMesh& mesh, TetId t, VertexId moved, Vec3 p) {
+  std::array<Vec3, 4> corners;
+  for (std::size_t n = 0; n < 4; ++n) {
+    const VertexId v = mesh.tets[t][n];
+    corners[n] = v == moved ? p : mesh.points_mm[v];
+  }
+  return corners;
+}
+
+template <class Visit>
+void for_each_vertex_by_colour(const MeshTopology& topology, const Visit& visit) {
+  for (const auto& colour : topology.colours) {
+    parallel_for(
+        colour.size(), [&](std::size_t i) { visit(colour[i]); }, 256);
+  }
+}
+
+}  // namespace
+
+bool AngleGuard::fits(VertexId v, Vec3 p) const {
+  for (const TetId t : topology_.tets_of_vertex[v]) {
+    const auto [a, b, c, d] = corners_with(mesh_, t, v, p);
+    const ShapeBounds& bounds = mesh_.tissues[t] == 0 ? kCushionBounds : bounds_;
+    if (!bounds.hold(measure_shape(a, b, c, d))) return false;
+  }
+  return true;
+}
+
+double AngleGuard::advance(VertexId v, Vec3 p, int halvings) const {
+  const Vec3 from = mesh_.points_mm[v];
+  double share = 1;
+  for (int n = 0; n <= halvings; ++n, share *= 0.5) {
+    const Vec3 at = from + share * (p - from);
+    if (fits(v, at)) {
+      mesh_.points_mm[v] = at;
+      return share;
+    }
+  }
+  return 0;
+}
+
+double AngleGuard::slack(VertexId v, Vec3 p) const {
+  double worst = 1;
+  for (const TetId t : topology_.tets_of_vertex[v]) {
+    const auto [a, b, c, d] = corners_with(mesh_, t, v, p);
+    const ShapeMeasure s = measure_shape(a, b, c, d);
+    if (mesh_.tissues[t] == 0) {
+      if (!kCushionBounds.hold(s)) return -1;
+      continue;
+    }
+    worst = std::min({worst, bounds_.largest_cos - s.largest_cos, s.smallest_cos - bounds_.smallest_cos,
+                      s.mean_ratio - bounds_.min_mean_ratio});
+  }
+  return worst;
+}
+
+void advance_all(TissueMesh& mesh, const MeshTopology& topology, const AngleGuard& guard, std::span<const Vec3> goals,
+                 int sweeps) {
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    for_each_vertex_by_colour(topology, [&](VertexId v) {
+      if (goals[v] != mesh.points_mm[v]) guard.advance(v, goals[v], 3);
+    });
+  }
+}
+
+void relax_interior(TissueMesh& mesh, const MeshTopology& topology, const AngleGuard& guard) {
+  for_each_vertex_by_colour(topology, [&](VertexId v) {
+    if (topology.on_interface(v) || topology.outside(v)) return;
+    Vec3 mean;
+    for (const VertexId w : topology.neighbours[v]) mean += mesh.points_mm[w];
+    mean = (1.0 / static_cast<double>(topology.neighbours[v].size())) * mean;
+    const Vec3 from = mesh.points_mm[v];
+    const double before = guard.slack(v, from);
+    for (const double share : {1.0, 0.3}) {
+      const Vec3 at = from + share * (mean - from);
+      const double after = guard.slack(v, at);
+      if (after < 0 || after < before) continue;
+      mesh.points_mm[v] = at;
+      return;
+    }
+  });
+}
+
+}  // namespace anatomesh

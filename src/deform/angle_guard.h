@@ -1,0 +1,47 @@
+// The angle guard: no vertex moves where one of its tetrahedra would leave the bounds. Since the lattice starts
+// inside them, they hold at every moment and so for the final mesh.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "mesh/adjacency.h"
+#include "mesh/tet_shape.h"
+#include "mesh/tissue_mesh.h"
+
+namespace anatomesh {
+
+/// Moves vertices of a mesh under bounds on the shape of every tetrahedron. Tetrahedra of the cushion need only
+/// stay positive with a little to spare.
+class AngleGuard {
+ public:
+  AngleGuard(TissueMesh& mesh, const MeshTopology& topology, const ShapeBounds& bounds)
+      : mesh_(mesh), topology_(topology), bounds_(bounds) {}
+
+  /// Whether all tetrahedra at v stay inside the bounds when v is at p.
+  bool fits(VertexId v, Vec3 p) const;
+
+  /// Moves v towards p as far as it goes: all the way, or 1/2, 1/4, ... of it, `halvings` times. Returns
+  /// the share gone, 0 if none. Neighbours of v must not move at the same time.
+  double advance(VertexId v, Vec3 p, int halvings) const;
+
+  /// How far the worst tetrahedron at v is from its bounds when v is at p; negative outside of them, 1 at
+  /// the most. Cushion tetrahedra count only when they turn over.
+  double slack(VertexId v, Vec3 p) const;
+
+ private:
+  TissueMesh& mesh_;
+  const MeshTopology& topology_;
+  ShapeBounds bounds_;
+};
+
+/// Moves all vertices towards their goals, those of one colour of the vertex graph in parallel, up to `sweeps` times.
+/// Vertices without a goal keep goal == position. The result does not depend on the number of threads.
+void advance_all(TissueMesh& mesh, const MeshTopology& topology, const AngleGuard& guard, std::span<const Vec3> goals,
+                 int sweeps);
+
+/// Moves the vertices inside the tissues towards the mean of their neighbours where that does not make the worst of
+/// their tetrahedra worse: makes room for the interfaces.
+void relax_interior(TissueMesh& mesh, const MeshTopology& topology, const AngleGuard& guard);
+
+}  // namespace anatomesh

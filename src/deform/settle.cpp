@@ -1,0 +1,85 @@
+#include "deform/settle.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/parallel.h"
+
+namespace anatomesh {
+namespace {
+
+constexpr std::size_t kMaxTissues = 8;
+
+// Solves the symmetric positive definite system A x = b.
+Vec3 solve_symmetric(const Mat3& a, Vec3 b) {
+  const Vec3 c0 = {a[0][0], a[1][0], a[2][0]}, c1 = {a[0][1], a[1][1], a[2][1]}, c2 = {a[0][2], a[1][2], a[2][2]};
+  const double det = dot(c0, cross(c1, c2));
+  return (1 / det) * Vec3{dot(b, cross(c1, c2)), dot(c0, cross(b, c2)), dot(c0, cross(c1, b))};
+}
+
+Vec3 mean_of_interface_neighbours(const TissueMesh& mesh, const MeshTopology& topology, VertexId v) {
+  const auto neighbours = topology.interface_neighbours[v];
+  if (neighbours.size() < 2) return mesh.points_mm[v];
+  Vec3 mean;
+  for (const VertexId w : neighbours) mean += mesh.points_mm[w];
+  return (1.0 / static_cast<double>(neighbours.size())) * mean;
+}
+
+}  // namespace
+
+// Damped Gauss-Newton step on the differences of each share from their mean.
+Vec3 boundary_step(const LabelField& field, Vec3 p, std::span<const TissueId> tissues) {
+  const std::size_t n = std::min(tissues.size(), kMaxTissues);
+  std::array<double, kMaxTissues> share;
+  std::array<Vec3, kMaxTissues> gradient;
+  field.evaluate(p, tissues.first(n), std::span(share).first(n), std::span(gradient).first(n));
+  double mean_share = 0;
+  Vec3 mean_gradient;
+  for (std::size_t i = 0; i < n; ++i) {
+    mean_share += share[i] / static_cast<double>(n);
+    mean_gradient += (1.0 / static_cast<double>(n)) * gradient[i];
+  }
+  Mat3 normal = {};
+  Vec3 rhs;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec3 g = gradient[i] - mean_gradient;
+    rhs -= (share[i] - mean_share) * g;
+    for (std::size_t r = 0; r < 3; ++r) {
+      for (std::size_t c = 0; c < 3; ++c) normal[r][c] += g[r] * g[c];
+    }
+  }
+  const double trace = normal[0][0] + normal[1][1] + normal[2][2];
+  const Vec3 spacing = field.image().spacing_mm;
+  const double voxel = std::max({spacing.x, spacing.y, spacing.z});
+  if (trace * voxel * voxel < 1e-6) return {};  // far from the boundary: no direction to go
+  for (std::size_t r = 0; r < 3; ++r) normal[r][r] += 0.01 * trace;
+  const Vec3 step = solve_symmetric(normal, rhs);
+  const double length = norm(step), longest = 0.5 * voxel;
+  return length > longest ? (longest / length) * step : step;
+}
+
+void settle(TissueMesh& mesh, const MeshTopology& topology, const AngleGuard& guard, const LabelField& field,
+            int sweeps, const Stage& stage) {
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    for (const auto& colour : topology.colours) {
+      stage.check_cancelled();
+      parallel_for(
+          colour.size(),
+          [&](std::size_t i) {
+            const VertexId v = colour[i];
+            if (!topology.on_interface(v)) return;
+            const auto tissues = topology.tissues_of_vertex[v];
+            const Vec3 from = mesh.points_mm[v];
+            const Vec3 relaxed = from + 0.5 * (mean_of_interface_neighbours(mesh, topology, v) - from);
+            const Vec3 goal = relaxed + boundary_step(field, relaxed, tissues);
+            if (guard.advance(v, goal, 2) == 0) guard.advance(v, from + boundary_step(field, from, tissues), 3);
+          },
+          128);
+    }
+    relax_interior(mesh, topology, guard);
+    stage.at(static_cast<double>(sweep + 1) / sweeps);
+  }
+}
+
+}  // namespace anatomesh

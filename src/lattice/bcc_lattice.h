@@ -1,0 +1,90 @@
+// Arithmetic of the body-centred cubic (BCC) lattice and its red refinement, after Molino, Bridson,
+// Teran and Fedkiw, "A Crystalline, Red Green Strategy for Meshing Highly Deformable Objects with
+// Tetrahedra", 12th International Meshing Roundtable, 2003.
+//
+// Units: at every level the lattice spacing is 4 units, so that cube corners are at multiples of 4, cube
+// centres at 2 plus multiples of 4, edge midpoints and the barycentres of tetrahedra at integers. Going
+// one level down doubles all coordinates. A tetrahedron is named by its level and its barycentre b, which has
+// one odd coordinate (axis p) and of the other two one that is 2 (axis q) and one that is 0 (axis r)
+// modulo 4. Its vertices, in this order, are the two ends of the long edge along q between cube corners
+// and the two ends of the long edge along r between cube centres:
+//     v0, v1: q = b_q -+ 2, p = the neighbour of b_p that is 0 modulo 4, r = b_r
+//     v2, v3: r = b_r -+ 2, p = the neighbour of b_p that is 2 modulo 4, q = b_q
+// The red children of a BCC tetrahedron, split along its shortest inner diagonal, are the BCC tetrahedra of
+// the next level inside it, so the whole hierarchy needs no stored geometry.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <utility>
+
+#include "anatomesh/types.h"
+
+namespace anatomesh {
+
+/// Integer lattice coordinates, in the units of some level.
+using LatticePoint = std::array<std::int32_t, 3>;
+
+/// The edges of a tetrahedron as pairs of its vertices: the two long ones first, then the short ones.
+inline constexpr std::array<std::array<int, 2>, 6> kTetEdges = {{{0, 1}, {2, 3}, {0, 2}, {0, 3}, {1, 2}, {1, 3}}};
+
+/// Red tetrahedra that start in one lattice cube (4 x 4 x 4 units).
+inline constexpr int kTetsPerCell = 12;
+
+/// The axes of a tetrahedron and the direction from its corner edge to its centre edge.
+struct BccFrame {
+  std::size_t p, q, r;
+  std::int32_t towards_centre;  ///< +1: the centre edge lies at b_p + 1, the corner edge at b_p - 1; -1: reverse
+
+  explicit BccFrame(const LatticePoint& barycentre);
+};
+
+/// Whether a point is the barycentre of a BCC tetrahedron of its level.
+bool is_bcc_barycentre(const LatticePoint& b);
+
+/// The vertices v0 .. v3, see above. Their order is not always positive: see is_positive().
+std::array<LatticePoint, 4> bcc_vertices(const LatticePoint& barycentre);
+
+/// Whether v0, v1, v2, v3 are positively oriented.
+bool is_positive(const LatticePoint& barycentre);
+
+/// Barycentres of the eight red children, in units of the next level: the four at the corners v0 .. v3,
+/// then those on the -q, +q, -r, +r side of the inner diagonal.
+std::array<LatticePoint, 8> bcc_children(const LatticePoint& barycentre);
+
+/// Barycentre, in units of the level above, of the tetrahedron that this one is a red child of.
+LatticePoint bcc_parent(const LatticePoint& barycentre);
+
+/// Midpoint of edge e (of kTetEdges), in units of the same level.
+LatticePoint bcc_edge_midpoint(const LatticePoint& barycentre, int edge);
+
+/// The edge (of kTetEdges) of this tetrahedron that has this midpoint; it must be one.
+int bcc_edge_at(const LatticePoint& barycentre, const LatticePoint& midpoint);
+
+/// Barycentres of all tetrahedra of a level around the edge with this midpoint: 4 around a long, 6 around
+/// a short edge.
+struct BccRing {
+  std::array<LatticePoint, 6> barycentre;
+  int count = 0;
+};
+BccRing bcc_tets_around(const LatticePoint& edge_midpoint);
+
+/// Position of a tetrahedron among the 12 of its cell, 0 to 11, and back.
+int bcc_local_index(const LatticePoint& barycentre);
+LatticePoint bcc_from_local(const LatticePoint& cell, int local_index);
+
+/// Lattice cube that holds a point: coordinates divided by 4, rounded down.
+inline LatticePoint bcc_cell(const LatticePoint& point) { return {point[0] >> 2, point[1] >> 2, point[2] >> 2}; }
+
+/// Barycentre of the tetrahedron that holds a real point (in units of the level). Points on shared faces
+/// belong to one tetrahedron, always the same.
+LatticePoint bcc_locate(Vec3 point);
+
+/// Which of the eight red children (order of bcc_children) holds a point of the tetrahedron: decided by
+/// the signs of a few differences, so every point belongs to exactly one child, also on shared faces.
+int bcc_child_at(const LatticePoint& barycentre, Vec3 point);
+
+/// Barycentric coordinates of a real point, all at once 1 in sum; scaled by 4.
+std::array<double, 4> bcc_barycentric_times_4(const LatticePoint& barycentre, Vec3 point);
+
+}  // namespace anatomesh

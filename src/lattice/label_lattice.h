@@ -1,0 +1,45 @@
+// The labelled lattice: a BCC lattice over the image, refined until each tissue reaches its fidelity, after
+// Drakopoulos and Chrisochoides, "Tetrahedral Image-To-Mesh Conversion for Anatomical Modeling and Surgical
+// Simulations", section on lattice refinement.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/stage.h"
+#include "image/tissue_image.h"
+#include "mesh/tissue_mesh.h"
+
+namespace anatomesh {
+
+/// What the lattice is asked for; sizes are in millimetres.
+struct LatticePlan {
+  double bcc_size_mm = 8;        ///< spacing of the coarsest lattice
+  int levels = 2;                ///< red refinements that fidelity may ask for: smallest spacing bcc_size / 2^levels
+  int extra_levels = 3;          ///< further ones for a tissue that would have no tetrahedron at all
+  std::vector<double> fidelity;  ///< F by tissue, [0] unused
+};
+
+/// Fidelity of one tissue on the lattice (section "fidelity" of the paper): S1 is the set of voxels in its
+/// tetrahedra, S2 the set of its voxels.
+struct LatticeFidelity {
+  std::uint64_t in_tets = 0;  ///< |S1|
+  std::uint64_t hits = 0;     ///< |S1 and S2|
+  std::uint64_t voxels = 0;   ///< |S2|
+  double f1() const { return in_tets ? static_cast<double>(hits) / static_cast<double>(in_tets) : 0; }
+  double f2() const { return voxels ? static_cast<double>(hits) / static_cast<double>(voxels) : 0; }
+};
+
+struct LabelledLattice {
+  TissueMesh mesh;                        ///< with its cushion of background
+  std::vector<LatticeFidelity> fidelity;  ///< by tissue, [0] unused
+};
+
+/// Builds it. Every voxel centre of the image belongs to exactly one tetrahedron (of the whole lattice,
+/// background included). A tetrahedron takes the label that most of its voxels have; one with fewer than ten
+/// voxels takes it from the image interpolated at a few points inside (the paper's local up-sampling,
+/// here for all tetrahedra whose vote would be noise, not only for empty ones).
+/// Throws InvalidInput (lattice too large for its coordinates), Cancelled.
+LabelledLattice build_labelled_lattice(const TissueImage& image, const LatticePlan& plan, const Stage& stage);
+
+}  // namespace anatomesh

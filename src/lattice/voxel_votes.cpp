@@ -1,0 +1,270 @@
+#include "lattice/voxel_votes.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "base/vec.h"
+
+namespace anatomesh {
+namespace {
+
+// Counts by tissue; few tissues meet in one tetrahedron, so a list does.
+class Ballot {
+ public:
+  void add(TissueId tissue, double weight) {
+    if (last_ < entries_.size() && entries_[last_].first == tissue) {
+      entries_[last_].second += weight;
+      return;
+    }
+    for (last_ = 0; last_ < entries_.size(); ++last_) {
+      if (entries_[last_].first == tissue) {
+        entries_[last_].second += weight;
+        return;
+      }
+    }
+    entries_.emplace_back(tissue, weight);
+  }
+  // Most votes; of equal ones the lowest tissue, so that the order of voting does not matter.
+  std::pair<TissueId, double> winner() const {
+    std::pair<TissueId, double> best = {0, 0};
+    for (const auto& e : entries_) {
+      if (e.second > best.second || (e.second == best.second && e.first < best.first)) best = e;
+    }
+    return best;
+  }
+  double votes_of(TissueId tissue) const {
+    for (const auto& e : entries_) {
+      if (e.first == tissue) return e.second;
+    }
+    return 0;
+  }
+  void clear() {
+    entries_.clear();
+    last_ = 0;
+  }
+
+ private:
+  std::vector<std::pair<TissueId, double>> entries_;
+  std::size_t last_ = 0;
+};
+
+Ballot& thread_ballot() {
+  thread_local Ballot ballot;
+  ballot.clear();
+  return ballot;
+}
+
+Vec3 blend(const std::array<Vec3, 4>& corners, const std::array<double, 4>& weight) {
+  return weight[0] * corners[0] + weight[1] * corners[1] + weight[2] * corners[2] + weight[3] * corners[3];
+}
+
+}  // namespace
+
+VoxelVotes::VoxelVotes(const TissueImage& image, const RedGreenLattice& lattice, Vec3 origin_mm, double unit_mm)
+    : image_(image),
+      lattice_(lattice),
+      order_(image.voxels.size()),
+      begin_(static_cast<std::size_t>(lattice.max_level()) + 1),
+      votes_(static_cast<std::size_t>(lattice.max_level()) + 1) {
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (int i = 0; i < image.size[a]; ++i)
+      position_[a].push_back((static_cast<double>(image.first[a] + i) * image.spacing_mm[a] - origin_mm[a]) / unit_mm);
+    index_per_unit_[a] = unit_mm / image.spacing_mm[a];
+    index_of_origin_[a] = origin_mm[a] / image.spacing_mm[a] - static_cast<double>(image.first[a]);
+  }
+  sort_into_roots();
+}
+
+Vec3 VoxelVotes::position(std::uint32_t voxel, int level) const {
+  const auto nx = static_cast<std::uint32_t>(image_.size[0]), ny = static_cast<std::uint32_t>(image_.size[1]);
+  const double scale = static_cast<double>(1 << level);
+  const std::uint32_t row = voxel / nx;
+  return {scale * position_[0][voxel % nx], scale * position_[1][row % ny], scale * position_[2][row / ny]};
+}
+
+// Counting sort. Threads fill a tetrahedron's list in any order; nothing reads more than its set.
+void VoxelVotes::sort_into_roots() {
+  const std::size_t slots = lattice_.slot_count(0);
+  const auto nx = static_cast<std::size_t>(image_.size[0]), rows = image_.voxels.size() / nx;
+  std::vector<std::atomic<std::uint32_t>> fill(slots);
+  const auto for_each_voxel = [&](auto&& visit) {
+    parallel_for(
+        rows,
+        [&](std::size_t row) {
+          const double y = position_[1][row % static_cast<std::size_t>(image_.size[1])];
+          const double z = position_[2][row / static_cast<std::size_t>(image_.size[1])];
+          for (std::size_t i = 0; i < nx; ++i) {
+            TetRef t;  // background at the crop's border may lie outside the lattice
+            if (lattice_.find(0, bcc_locate({position_[0][i], y, z}), t))
+              visit(t.slot, static_cast<std::uint32_t>(row * nx + i));
+          }
+        },
+        64);
+  };
+  for_each_voxel([&](std::uint32_t slot, std::uint32_t) { fill[slot].fetch_add(1, std::memory_order_relaxed); });
+  auto& begin = begin_[0];
+  begin.resize(slots);
+  votes_[0].resize(slots);
+  std::uint32_t next = 0;
+  for (std::size_t s = 0; s < slots; ++s) {
+    begin[s] = next;
+    votes_[0][s].count = fill[s];
+    next += fill[s];
+    fill[s] = begin[s];
+  }
+  for_each_voxel([&](std::uint32_t slot, std::uint32_t voxel) {
+    order_[fill[slot].fetch_add(1, std::memory_order_relaxed)] = voxel;
+  });
+  parallel_for(
+      slots,
+      [&](std::size_t s) {
+        const TetRef t = {0, static_cast<std::uint32_t>(s)};
+        votes_[0][s] = count_votes({&order_[0] + begin[s], votes_[0][s].count}, corners_in_voxels(t));
+      },
+      64);
+}
+
+void VoxelVotes::descend(const std::vector<TetRef>& refined) {
+  for (std::size_t level = 1; level < votes_.size(); ++level) {
+    begin_[level].resize(lattice_.slot_count(static_cast<int>(level)));
+    votes_[level].resize(lattice_.slot_count(static_cast<int>(level)));
+  }
+  for (int level = 0; level < lattice_.max_level(); ++level) {
+    std::vector<TetRef> parents;
+    for (const TetRef t : refined) {
+      if (t.level == level) parents.push_back(t);
+    }
+    parallel_for(
+        parents.size(), [&](std::size_t i) { hand_down(parents[i]); }, 64);
+  }
+}
+
+void VoxelVotes::hand_down(TetRef parent) {
+  const auto level = static_cast<std::size_t>(parent.level);
+  const Vote whole = votes_[level][parent.slot];
+  const auto children = lattice_.children(parent);
+  if (hands_label_down(parent)) {
+    for (const TetRef child : children) {
+      begin_[level + 1][child.slot] = kInherited;
+      votes_[level + 1][child.slot] = {0, 0, whole.tissue, true};
+    }
+    return;
+  }
+  const LatticePoint b = lattice_.barycentre(parent);
+  std::uint32_t* const first = &order_[0] + begin_[level][parent.slot];
+  thread_local std::array<std::vector<std::uint32_t>, 8> parts;
+  for (auto& part : parts) part.clear();
+  for (std::uint32_t v = 0; v < whole.count; ++v)
+    parts[static_cast<std::size_t>(bcc_child_at(b, position(first[v], parent.level)))].push_back(first[v]);
+  std::uint32_t next = begin_[level][parent.slot];
+  for (std::size_t c = 0; c < 8; ++c) {
+    std::copy(parts[c].begin(), parts[c].end(), &order_[0] + next);
+    begin_[level + 1][children[c].slot] = next;
+    votes_[level + 1][children[c].slot] =
+        count_votes({&order_[0] + next, parts[c].size()}, corners_in_voxels(children[c]));
+    next += static_cast<std::uint32_t>(parts[c].size());
+  }
+}
+
+std::span<const std::uint32_t> VoxelVotes::voxels(TetRef t) const {
+  const auto level = static_cast<std::size_t>(t.level);
+  const Vote& v = votes_[level][t.slot];
+  return v.count ? std::span<const std::uint32_t>(&order_[0] + begin_[level][t.slot], v.count)
+                 : std::span<const std::uint32_t>();
+}
+
+std::array<Vote, 4> VoxelVotes::green_votes(TetRef leaf) const {
+  const unsigned mask = lattice_.split_edges(leaf);
+  const GreenSplit& split = green_split(mask);
+  const Vote& whole = vote(leaf);
+  std::array<Vote, 4> votes;
+  if (hands_label_down(leaf)) {
+    votes.fill({0, 0, whole.tissue, true});
+    votes[0].count = votes[0].hits = whole.count;  // together they hold what the leaf holds
+    return votes;
+  }
+  const LatticePoint b = lattice_.barycentre(leaf);
+  thread_local std::array<std::vector<std::uint32_t>, 4> parts;
+  for (auto& part : parts) part.clear();
+  for (const std::uint32_t v : voxels(leaf)) {
+    const int child = green_child_at(mask, bcc_barycentric_times_4(b, position(v, leaf.level)));
+    parts[static_cast<std::size_t>(child)].push_back(v);
+  }
+  const std::array<Vec3, 4> corners = corners_in_voxels(leaf);
+  for (std::size_t c = 0; c < static_cast<std::size_t>(split.count); ++c) {
+    std::array<Vec3, 4> part;
+    for (std::size_t n = 0; n < 4; ++n) {
+      const std::size_t node = split.tets[c][n];
+      part[n] = node < 4 ? corners[node]
+                         : 0.5 * (corners[static_cast<std::size_t>(kTetEdges[node - 4][0])] +
+                                  corners[static_cast<std::size_t>(kTetEdges[node - 4][1])]);
+    }
+    votes[c] = count_votes(parts[c], part);
+  }
+  return votes;
+}
+
+Vec3 VoxelVotes::to_voxel_index(LatticePoint point, int level) const {
+  Vec3 index;
+  const double scale = 1.0 / static_cast<double>(1 << level);
+  for (std::size_t a = 0; a < 3; ++a) index[a] = index_of_origin_[a] + scale * point[a] * index_per_unit_[a];
+  return index;
+}
+
+std::array<Vec3, 4> VoxelVotes::corners_in_voxels(TetRef t) const {
+  std::array<Vec3, 4> corners;
+  const auto vertices = bcc_vertices(lattice_.barycentre(t));
+  for (std::size_t v = 0; v < 4; ++v) corners[v] = to_voxel_index(vertices[v], t.level);
+  return corners;
+}
+
+Vote VoxelVotes::count_votes(std::span<const std::uint32_t> voxels, const std::array<Vec3, 4>& corners) const {
+  Ballot& ballot = thread_ballot();
+  for (const std::uint32_t v : voxels) ballot.add(image_.voxels[v], 1);
+  Vote result;
+  result.count = static_cast<std::uint32_t>(voxels.size());
+  const auto [tissue, votes] = ballot.winner();
+  const bool unanimous = votes == static_cast<double>(voxels.size()) && !voxels.empty();
+  result.tissue = tissue;
+  result.hits = static_cast<std::uint32_t>(votes);
+  if (result.count < kQuorum) {
+    const TissueId chosen = interpolated_tissue(corners);
+    if (chosen != tissue || voxels.empty()) {
+      result.tissue = chosen;
+      result.hits = 0;
+      for (const std::uint32_t v : voxels) result.hits += image_.voxels[v] == chosen;
+    }
+  }
+  result.pure = voxels.empty() || (unanimous && result.tissue == tissue);
+  return result;
+}
+
+// Trilinear interpolation of the tissues' indicator functions, summed over five points inside.
+TissueId VoxelVotes::interpolated_tissue(const std::array<Vec3, 4>& corners) const {
+  constexpr double kIn = 0.55, kOff = 0.15;
+  constexpr std::array<std::array<double, 4>, 5> kPoints = {{{0.25, 0.25, 0.25, 0.25},
+                                                             {kIn, kOff, kOff, kOff},
+                                                             {kOff, kIn, kOff, kOff},
+                                                             {kOff, kOff, kIn, kOff},
+                                                             {kOff, kOff, kOff, kIn}}};
+  Ballot& ballot = thread_ballot();
+  for (const auto& weights : kPoints) {
+    const Vec3 x = blend(corners, weights);
+    std::array<int, 3> low;
+    Vec3 share;
+    for (std::size_t a = 0; a < 3; ++a) {
+      low[a] = static_cast<int>(std::floor(x[a]));
+      share[a] = x[a] - low[a];
+    }
+    for (int corner = 0; corner < 8; ++corner) {
+      const int dx = corner & 1, dy = corner >> 1 & 1, dz = corner >> 2;
+      const double w = (dx ? share.x : 1 - share.x) * (dy ? share.y : 1 - share.y) * (dz ? share.z : 1 - share.z);
+      ballot.add(image_.at_or_background(low[0] + dx, low[1] + dy, low[2] + dz), w);
+    }
+  }
+  return ballot.winner().first;
+}
+
+}  // namespace anatomesh

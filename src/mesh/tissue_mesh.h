@@ -1,0 +1,22 @@
+// The mesh as the stages between lattice and result work on it.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "anatomesh/types.h"
+#include "image/tissue_image.h"
+
+namespace anatomesh {
+
+/// A conforming tetrahedral mesh in the image's axis-aligned frame (see TissueImage), positively
+/// oriented. Tetrahedra of tissue 0 are the cushion: the background around the tissues' outer surface, kept
+/// positive while vertices move so that no two sheets of the surface can pass through each other, and dropped
+/// at the end.
+struct TissueMesh {
+  std::vector<Vec3> points_mm;
+  std::vector<std::array<VertexId, 4>> tets;
+  std::vector<TissueId> tissues;  ///< one a tetrahedron
+};
+
+}  // namespace anatomesh

@@ -1,0 +1,162 @@
+#include "pipeline/checks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <string>
+
+#include "anatomesh/errors.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/vec.h"
+
+namespace anatomesh {
+namespace {
+
+std::string text(double value) {
+  std::ostringstream out;
+  out << value;
+  return out.str();
+}
+
+struct Range {
+  const char* option;
+  double value, low, high;
+  bool low_allowed, high_allowed;
+};
+
+void require(const Range& r) {
+  const bool above = r.low_allowed ? r.value >= r.low : r.value > r.low;
+  const bool below = r.high_allowed ? r.value <= r.high : r.value < r.high;
+  if (above && below) return;
+  const bool unbounded = std::isinf(r.high);
+  std::string right = std::string(r.low_allowed ? "at least " : "above ") + text(r.low);
+  if (!unbounded) right += std::string(r.high_allowed ? " and at most " : " and below ") + text(r.high);
+  throw InvalidOption(std::string(r.option) + " is " + text(r.value) + "; it must be " + right);
+}
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// The directions as columns must be orthonormal to this.
+constexpr double kRotationTolerance = 1e-4;
+
+double rotation_defect(const Mat3& m) {
+  double worst = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (std::size_t b = 0; b < 3; ++b) {
+      double product = a == b ? -1 : 0;
+      for (std::size_t r = 0; r < 3; ++r) product += m[r][a] * m[r][b];
+      if (!(std::abs(product) <= worst)) worst = std::isnan(product) ? kInfinity : std::abs(product);
+    }
+  }
+  return worst;
+}
+
+void require_label(const TissueImage& tissues, Label label, const char* option) {
+  if (label != 0 && std::binary_search(tissues.labels.begin(), tissues.labels.end(), label)) return;
+  throw InvalidOption(std::string(option) + " names label " + std::to_string(label) +
+                      ", which is not among the labels to mesh");
+}
+
+// Area of all voxel faces between two tissues, mm^2.
+double boundary_area_mm2(const TissueImage& image) {
+  const Vec3 s = image.spacing_mm;
+  const auto sy = static_cast<std::size_t>(image.size[0]), sz = sy * static_cast<std::size_t>(image.size[1]);
+  const auto rows = image.voxels.size() / sy;
+  return parallel_sum(rows, 256, [&](std::size_t begin, std::size_t end) {
+    std::array<std::size_t, 3> faces = {0, 0, 0};
+    for (std::size_t v = begin * sy; v + sz < std::min(end * sy, image.voxels.size()); ++v) {
+      faces[0] += image.voxels[v] != image.voxels[v + 1];
+      faces[1] += image.voxels[v] != image.voxels[v + sy];
+      faces[2] += image.voxels[v] != image.voxels[v + sz];
+    }
+    return static_cast<double>(faces[0]) * s.y * s.z + static_cast<double>(faces[1]) * s.x * s.z +
+           static_cast<double>(faces[2]) * s.x * s.y;
+  });
+}
+
+}  // namespace
+
+void check_options(const Options& o) {
+  const LatticeOptions& l = o.lattice;
+  const DeformOptions& d = o.deform;
+  std::vector<Range> ranges = {
+      {"bcc_size_mm", l.bcc_size_mm, 0, kInfinity, true, false},
+      {"min_size_mm", l.min_size_mm, 0, kInfinity, true, false},
+      {"fidelity", l.fidelity, 0, 1, false, true},
+      {"iterations", static_cast<double>(d.iterations), 0, 1000, true, true},
+      {"min_dihedral_deg", d.min_dihedral_deg, 0, 30, true, true},
+      {"max_dihedral_deg", d.max_dihedral_deg, 117, 180, true, true},
+      {"min_mean_ratio", d.min_mean_ratio, 0, 0.5, true, true},
+      {"threads", static_cast<double>(o.threads), 0, 4096, true, true},
+      {"max_memory_gib", o.max_memory_gib, 0, kInfinity, true, false},
+      {"default_material young_modulus_pa", d.default_material.young_modulus_pa, 0, kInfinity, false, false},
+      {"default_material poisson_ratio", d.default_material.poisson_ratio, 0, 0.5, true, false},
+  };
+  for (const auto& [label, fidelity] : l.fidelity_label)
+    ranges.push_back({"fidelity_label", fidelity, 0, 1, false, true});
+  for (const auto& [label, material] : d.material) {
+    ranges.push_back({"young_modulus_pa", material.young_modulus_pa, 0, kInfinity, false, false});
+    ranges.push_back({"poisson_ratio", material.poisson_ratio, 0, 0.5, true, false});
+  }
+  for (const Range& r : ranges) require(r);
+  if (l.bcc_size_mm > 0 && l.min_size_mm > l.bcc_size_mm) {
+    throw InvalidOption("min_size_mm is " + text(l.min_size_mm) + "; it must be at most bcc_size_mm, " +
+                        text(l.bcc_size_mm));
+  }
+}
+
+void check_image(const LabelImage& image) {
+  double voxels = 1;
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (image.size[a] < 1) throw InvalidInput("the image has no voxels along axis " + std::to_string(a));
+    const double s = image.spacing_mm[a];
+    if (!(s > 0) || std::isinf(s)) {
+      throw InvalidInput("the voxel spacing along axis " + std::to_string(a) + " is " + text(s) +
+                         "; it must be a positive number of mm");
+    }
+    if (!std::isfinite(image.origin_mm[a]))
+      throw InvalidInput("the origin is not finite along axis " + std::to_string(a));
+    voxels *= static_cast<double>(image.size[a]);
+  }
+  if (voxels != static_cast<double>(image.voxels.size())) {
+    throw InvalidInput("the image has " + std::to_string(image.voxels.size()) + " labels for " + text(voxels) +
+                       " voxels; the numbers must be equal");
+  }
+  if (voxels > 4e9) throw InvalidInput("the image has " + text(voxels) + " voxels; at most 4e9 are possible");
+  if (const double defect = rotation_defect(image.direction); defect > kRotationTolerance) {
+    throw InvalidInput("the direction matrix is off a rotation by " + text(defect) +
+                       "; its columns must be orthogonal unit vectors");
+  }
+}
+
+Options with_sizes_filled_in(const Options& options, const LabelImage& image) {
+  Options filled = options;
+  const Vec3 s = image.spacing_mm;
+  if (filled.lattice.bcc_size_mm == 0) filled.lattice.bcc_size_mm = 8 * (s.x + s.y + s.z) / 3;
+  if (filled.lattice.min_size_mm == 0) filled.lattice.min_size_mm = filled.lattice.bcc_size_mm / 4;
+  return filled;
+}
+
+void check_labels_exist(const Options& options, const TissueImage& tissues) {
+  for (const Label label : options.labels) require_label(tissues, label, "labels");
+  for (const auto& [label, fidelity] : options.lattice.fidelity_label) require_label(tissues, label, "fidelity_label");
+  for (const auto& [label, material] : options.deform.material) require_label(tissues, label, "material");
+}
+
+void check_memory(const Options& options, const LabelImage& image, const TissueImage& tissues) {
+  // Measured: the finest tetrahedra lie in a layer along the boundaries, about this many for each square of the
+  // smallest lattice spacing, and each takes this much while the mesh deforms.
+  constexpr double kTetsPerSquare = 10, kBytesPerTet = 700, kBytesPerVoxel = 6, kGib = 1024.0 * 1024 * 1024;
+  const double h = options.lattice.min_size_mm;
+  const double tets = kTetsPerSquare * boundary_area_mm2(tissues) / (h * h);
+  const double needed_gib = (tets * kBytesPerTet + static_cast<double>(tissues.voxels.size()) * kBytesPerVoxel) / kGib;
+  const double limit_gib = options.max_memory_gib > 0 ? options.max_memory_gib : available_memory_gib();
+  if (limit_gib == 0 || needed_gib <= limit_gib) return;
+  throw InvalidInput("meshing this image of " + std::to_string(image.voxels.size()) + " voxels would take about " +
+                     text(std::ceil(needed_gib * 10) / 10) + " GiB of memory where " +
+                     text(std::floor(limit_gib * 10) / 10) + " GiB may be used; take a larger bcc_size or min_size");
+}
+
+}  // namespace anatomesh

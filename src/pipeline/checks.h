@@ -1,0 +1,18 @@
+// What is refused before the work starts.
+#pragma once
+
+#include "anatomesh/image_to_mesh.h"
+#include "image/tissue_image.h"
+
+namespace anatomesh {
+
+/// Options with the sizes that were 0 set from the image's spacing.
+Options with_sizes_filled_in(const Options& options, const LabelImage& image);
+
+/// Throws InvalidOption for a label in `labels`, `fidelity_label` or `material` that the image does not have.
+void check_labels_exist(const Options& options, const TissueImage& tissues);
+
+/// Throws InvalidInput when meshing would need more memory than max_memory_gib or than there is.
+void check_memory(const Options& options, const LabelImage& image, const TissueImage& tissues);
+
+}  // namespace anatomesh

@@ -1,0 +1,145 @@
+// The one place that knows the order of the stages.
+#include "anatomesh/image_to_mesh.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <string>
+
+#include "base/parallel.h"
+#include "base/stage.h"
+#include "base/vec.h"
+#include "deform/deform.h"
+#include "image/tissue_image.h"
+#include "lattice/label_lattice.h"
+#include "pipeline/checks.h"
+
+namespace anatomesh {
+namespace {
+
+class Stopwatch {
+ public:
+  explicit Stopwatch(std::vector<StageTime>& times) : times_(times) {}
+  void stage_done(std::string name) {
+    const auto now = Clock::now();
+    times_.push_back({std::move(name), std::chrono::duration<double>(now - start_).count()});
+    start_ = now;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::vector<StageTime>& times_;
+  Clock::time_point start_ = Clock::now();
+};
+
+LatticePlan make_plan(const TissueImage& image, const LatticeOptions& options) {
+  LatticePlan plan;
+  plan.bcc_size_mm = options.bcc_size_mm;
+  plan.levels = std::max(0, static_cast<int>(std::floor(std::log2(options.bcc_size_mm / options.min_size_mm) + 1e-9)));
+  plan.fidelity.assign(image.labels.size(), options.fidelity);
+  for (const auto& [label, fidelity] : options.fidelity_label) {
+    const auto at = std::lower_bound(image.labels.begin(), image.labels.end(), label);
+    plan.fidelity[static_cast<std::size_t>(at - image.labels.begin())] = fidelity;
+  }
+  return plan;
+}
+
+// Image frame (index * spacing) -> LPS or RAS.
+struct ToPhysical {
+  Mat3 rotation;
+  Vec3 origin_mm;
+
+  ToPhysical(const LabelImage& image, Frame frame) : rotation(image.direction), origin_mm(image.origin_mm) {
+    if (frame == Frame::lps) return;
+    for (const std::size_t axis : {0u, 1u}) {
+      for (double& entry : rotation[axis]) entry = -entry;
+      origin_mm[axis] = -origin_mm[axis];
+    }
+  }
+  Vec3 operator()(Vec3 p) const { return origin_mm + rotation * p; }
+  bool mirrors() const { return determinant(rotation) < 0; }
+};
+
+// Drops the cushion and the vertices that only it used; tissue numbers become labels.
+TetMesh finish(const TissueMesh& mesh, const TissueImage& image, const ToPhysical& to_physical) {
+  constexpr VertexId kUnused = static_cast<VertexId>(-1);
+  TetMesh result;
+  std::vector<VertexId> number(mesh.points_mm.size(), kUnused);
+  const bool mirrors = to_physical.mirrors();
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    if (mesh.tissues[t] == 0) continue;
+    std::array<VertexId, 4> tet = mesh.tets[t];
+    if (mirrors) std::swap(tet[2], tet[3]);
+    for (VertexId& v : tet) {
+      if (number[v] == kUnused) {
+        number[v] = static_cast<VertexId>(result.points_mm.size());
+        result.points_mm.push_back(to_physical(mesh.points_mm[v]));
+      }
+      v = number[v];
+    }
+    result.tets.push_back(tet);
+    result.labels.push_back(image.labels[mesh.tissues[t]]);
+  }
+  return result;
+}
+
+std::vector<TissueOutcome> describe_tissues(const TissueImage& image, const LatticePlan& plan,
+                                            const LabelledLattice& lattice) {
+  std::vector<TissueOutcome> outcomes;
+  for (std::size_t t = 1; t < image.labels.size(); ++t) {
+    outcomes.push_back(
+        {image.labels[t], image.counts[t], 0, plan.fidelity[t], lattice.fidelity[t].f1(), lattice.fidelity[t].f2()});
+  }
+  for (const TissueId t : lattice.mesh.tissues) {
+    if (t != 0) ++outcomes[t - 1u].tets;
+  }
+  return outcomes;
+}
+
+std::vector<std::string> describe_losses(const std::vector<TissueOutcome>& tissues) {
+  std::vector<std::string> warnings;
+  for (const TissueOutcome& tissue : tissues) {
+    if (tissue.tets > 0) continue;
+    warnings.push_back("label " + std::to_string(tissue.label) + " (" + std::to_string(tissue.voxels) +
+                       (tissue.voxels == 1 ? " voxel" : " voxels") +
+                       ") is too small to be represented and is not in the mesh; a smaller bcc_size may help");
+  }
+  return warnings;
+}
+
+}  // namespace
+
+Result image_to_mesh(const LabelImage& image, const Options& options, const Progress& progress) {
+  check_options(options);
+  check_image(image);
+  const ThreadLimit threads(options.threads);
+  Result result;
+  result.options = with_sizes_filled_in(options, image);
+  Stopwatch watch(result.times);
+
+  const Stage reading(progress, "labels", 0.0, 0.05);
+  const TissueImage tissues = make_tissue_image(image, options.labels);
+  check_labels_exist(result.options, tissues);
+  check_memory(result.options, image, tissues);
+  watch.stage_done("labels");
+
+  const LatticePlan plan = make_plan(tissues, result.options.lattice);
+  LabelledLattice lattice = build_labelled_lattice(tissues, plan, Stage(progress, "lattice", 0.05, 0.3));
+  watch.stage_done("lattice");
+
+  if (options.deform.iterations > 0) {
+    deform(lattice.mesh, tissues, result.options.deform, Stage(progress, "deform", 0.3, 0.95));
+  }
+  watch.stage_done("deform");
+
+  const Stage finishing(progress, "finish", 0.95, 1.0);
+  result.tissues = describe_tissues(tissues, plan, lattice);
+  result.warnings = describe_losses(result.tissues);
+  result.mesh = finish(lattice.mesh, tissues, ToPhysical(image, options.frame));
+  if (result.mesh.tets.empty()) throw MeshingFailed("no tissue could be represented; take a smaller bcc_size");
+  watch.stage_done("finish");
+  finishing.at(1);
+  return result;
+}
+
+}  // namespace anatomesh
