@@ -82,6 +82,15 @@ std::size_t split_face(unsigned mask) {
   return 4;
 }
 
+// Where two edges of one face are split: the third one of that face; else -1.
+int third_edge_of_face(unsigned mask) {
+  if (std::popcount(mask) != 2) return -1;
+  for (const unsigned face : kFaceEdges) {
+    if ((mask & ~face) == 0) return std::countr_zero(face & ~mask);
+  }
+  return -1;
+}
+
 std::array<GreenSplit, 64> make_green_table() {
   std::array<GreenSplit, 64> table;
   for (unsigned mask = 0; mask < 64; ++mask) {
@@ -229,10 +238,21 @@ std::vector<TetRef> RedGreenLattice::refine(const std::vector<TetRef>& marked) {
     while (!pending_.empty()) {
       const TetRef next = pending_.back();
       pending_.pop_back();
-      refine_one(next, refined);
+      make_green_or_refine(next, refined);
     }
   }
   return refined;
+}
+
+// Two split edges of a face need the third only, not eight children; so refinement does not run on through the
+// lattice. More edges may have been split since the tetrahedron was put on the list.
+void RedGreenLattice::make_green_or_refine(TetRef t, std::vector<TetRef>& refined) {
+  if (is_refined(t) || is_green_pattern(split_edges(t))) return;
+  if (const int third = third_edge_of_face(split_edges(t)); third >= 0) {
+    split_edge(t.level, bcc_edge_midpoint(barycentre(t), third), refined);
+  } else {
+    refine_one(t, refined);
+  }
 }
 
 void RedGreenLattice::refine_one(TetRef t, std::vector<TetRef>& refined) {

@@ -4,7 +4,8 @@
 // Invariant: when an edge of a level is split, every tetrahedron of that level around it exists (its
 // parent has been refined) and has the edge in its mask. So a leaf's mask says all about its neighbours: a leaf
 // none of whose edges are split is used as it is, one split edge, two opposite ones or the three of a
-// face are made green, and any other pattern has been refined.
+// face are made green; two edges of one face have had the third split as well, and any other pattern has
+// been refined.
 #pragma once
 
 #include <array>
@@ -73,6 +74,7 @@ class RedGreenLattice {
   std::uint32_t root_block(const LatticePoint& cell) const;
   bool inside(int level, const LatticePoint& barycentre) const;
   TetRef create(int level, const LatticePoint& barycentre);
+  void make_green_or_refine(TetRef t, std::vector<TetRef>& refined);
   void refine_one(TetRef t, std::vector<TetRef>& refined);
   void split_edge(int level, const LatticePoint& midpoint, std::vector<TetRef>& refined);
   TetRef require(int level, const LatticePoint& barycentre, std::vector<TetRef>& refined);

@@ -1,0 +1,125 @@
+#include "io/cell_arrays.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <limits>
+
+#include "anatomesh/errors.h"
+#include "io/number_text.h"
+#include "io/output_file.h"
+
+namespace anatomesh {
+namespace {
+
+constexpr std::int64_t kTetrahedron = 10;  // VTK_TETRA
+
+/// Names that tools give to the array of tissues, in small letters, the best first.
+constexpr std::array kLabelNames = {
+    "label",       "labels",        "labelid",          "medit:ref", "gmsh:physical", "material",  "materials",
+    "material_id", "materialid",    "region",           "regions",   "region_id",     "regionid",  "tissue",
+    "tissues",     "cellentityids", "cell_tags",        "tag",       "tags",          "attribute", "subdomain",
+    "subdomains",  "domain",        "gmsh:geometrical", "scalars"};
+
+/// Integral arrays that number cells and say nothing about tissues, in small letters.
+constexpr std::array kIdNames = {"vtkghosttype",    "vtkoriginalcellids", "globalids", "globalcellids",
+                                 "globalelementid", "pedigreeids",        "cellid",    "cellids"};
+
+std::string small_letters(const std::string& name) {
+  std::string text = name;
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+bool is_integral(const CellArray& array) {
+  return array.values.type != NumberType::f32 && array.values.type != NumberType::f64;
+}
+
+/// The array that holds the tissues; null where the file has no such thing.
+const CellArray* label_array(const std::vector<CellArray>& arrays) {
+  for (const char* name : kLabelNames) {
+    for (const CellArray& array : arrays) {
+      if (small_letters(array.name) == name) return &array;
+    }
+  }
+  for (const CellArray& array : arrays) {
+    const bool is_id = std::find(kIdNames.begin(), kIdNames.end(), small_letters(array.name)) != kIdNames.end();
+    if (is_integral(array) && !is_id) return &array;
+  }
+  return nullptr;
+}
+
+/// One label a cell.
+std::vector<Label> labels_of(const std::filesystem::path& path, const CellArrays& cells) {
+  std::vector<Label> labels(cells.types.size(), Label{1});
+  const CellArray* const array = label_array(cells.arrays);
+  if (array == nullptr) return labels;
+  if (array->values.size() != labels.size()) {
+    throw_damaged(
+        path, "it has " + number_text(array->values.size()) + " labels for " + number_text(labels.size()) + " cells");
+  }
+  if (const auto bad = store_labels(array->values.type, array->values.bytes.data(), labels.size(), labels.data())) {
+    throw InvalidInput("cell " + number_text(bad->position) + " of " + in_quotes(path) + " has the value " +
+                       bad->value + " in the array '" + array->name + "'; " + kLabelRule);
+  }
+  return labels;
+}
+
+/// Throws unless every cell can be followed to its corners.
+void check_offsets(const std::filesystem::path& path, const CellArrays& cells) {
+  if (cells.offsets.size() != cells.types.size() + 1) {
+    throw_damaged(path, "it has " + number_text(cells.types.size()) + " cell types and " +
+                            number_text(cells.offsets.size()) + " cell offsets");
+  }
+  const auto most = static_cast<std::int64_t>(cells.corners.size());
+  std::int64_t before = 0;
+  for (const std::int64_t offset : cells.offsets) {
+    if (offset < before || offset > most)
+      throw_damaged(path, "the cell offset " + number_text(offset) + " is out of order");
+    before = offset;
+  }
+}
+
+/// Cell n, which is a tetrahedron.
+std::array<VertexId, 4> tet_at(const std::filesystem::path& path, const CellArrays& cells, std::size_t n) {
+  if (cells.offsets[n + 1] - cells.offsets[n] != 4) {
+    throw_damaged(path, "cell " + number_text(n) + " is a tetrahedron without four corners");
+  }
+  std::array<VertexId, 4> tet;
+  for (std::size_t corner = 0; corner < 4; ++corner) {
+    const std::int64_t id = cells.corners[static_cast<std::size_t>(cells.offsets[n]) + corner];
+    if (id < 0 || static_cast<std::size_t>(id) >= cells.points_mm.size()) {
+      throw_damaged(path, "cell " + number_text(n) + " refers to point " + number_text(id) + " of " +
+                              number_text(cells.points_mm.size()));
+    }
+    tet[corner] = static_cast<VertexId>(id);
+  }
+  return tet;
+}
+
+}  // namespace
+
+void throw_damaged(const std::filesystem::path& path, const std::string& why) {
+  throw IoError(in_quotes(path) + " is truncated or damaged: " + why);
+}
+
+TetMesh tet_mesh_from(const std::filesystem::path& path, CellArrays cells) {
+  if (cells.points_mm.size() > std::numeric_limits<VertexId>::max()) {
+    throw InvalidInput(in_quotes(path) + " has " + number_text(cells.points_mm.size()) +
+                       " points; at most 4294967295 can be read");
+  }
+  check_offsets(path, cells);
+  const std::vector<Label> labels = labels_of(path, cells);
+  TetMesh mesh;
+  for (std::size_t n = 0; n < cells.types.size(); ++n) {
+    if (cells.types[n] != kTetrahedron) continue;
+    mesh.tets.push_back(tet_at(path, cells, n));
+    mesh.labels.push_back(labels[n]);
+  }
+  if (mesh.tets.empty()) throw InvalidInput(in_quotes(path) + " has no linear tetrahedra");
+  mesh.points_mm = std::move(cells.points_mm);
+  return mesh;
+}
+
+}  // namespace anatomesh

@@ -1,0 +1,44 @@
+// A mesh as files have it: cells of any kind, arrays of any number type.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "anatomesh/tet_mesh.h"
+#include "io/voxel_type.h"
+
+namespace anatomesh {
+
+/// Numbers of one type, in this machine's byte order.
+struct NumberArray {
+  NumberType type = NumberType::u8;
+  std::vector<std::byte> bytes;
+  std::size_t size() const { return bytes.size() / bytes_of(type); }
+};
+
+/// One value a cell, with its name.
+struct CellArray {
+  std::string name;
+  NumberArray values;
+};
+
+/// What a mesh file holds; nothing of it is checked yet.
+struct CellArrays {
+  std::vector<Vec3> points_mm;
+  std::vector<std::int64_t> offsets;  ///< where each cell begins in corners, and where the last one ends
+  std::vector<std::int64_t> corners;  ///< ids of points
+  std::vector<std::int64_t> types;    ///< VTK's numbers for kinds of cells
+  std::vector<CellArray> arrays;      ///< those with one component
+};
+
+/// Takes the linear tetrahedra out, as read_mesh() says. Throws IoError (arrays that do not fit together),
+/// InvalidInput (no tetrahedra, labels that are none).
+TetMesh tet_mesh_from(const std::filesystem::path& path, CellArrays cells);
+
+/// Throws IoError: "FILE is truncated or damaged: why".
+[[noreturn]] void throw_damaged(const std::filesystem::path& path, const std::string& why);
+
+}  // namespace anatomesh

@@ -1,0 +1,34 @@
+// Where an image lies in space, as files give it and as LabelImage wants it.
+#pragma once
+
+#include <filesystem>
+
+#include "anatomesh/label_image.h"
+
+namespace anatomesh {
+
+/// Spacing, origin and direction of an image, in the terms of LabelImage.
+struct ImageGeometry {
+  Vec3 spacing_mm;
+  Vec3 origin_mm;
+  Mat3 direction = kIdentity3;
+};
+
+/// How far a direction matrix may be from orthonormal (largest entry of transpose(M) M - I): files keep
+/// few digits, but a sheared image cannot be represented.
+inline constexpr double kDirectionTolerance = 1e-4;
+
+/// Largest entry of transpose(M) M - I; NaN where the matrix holds one.
+double deviation_from_orthonormal(const Mat3& matrix);
+
+/// The orthonormal matrix nearest to one that deviates little; keeps a reflection.
+Mat3 nearest_orthonormal(Mat3 matrix);
+
+/// Physical point of the index (i, j, k), which need not be whole.
+Vec3 physical_point(const ImageGeometry& geometry, Vec3 index);
+
+/// Throws InvalidInput naming the file unless spacing and origin are finite, spacing is positive and
+/// direction is orthonormal within kDirectionTolerance. Returns it with an exactly orthonormal direction.
+ImageGeometry checked_geometry(const std::filesystem::path& path, const ImageGeometry& geometry);
+
+}  // namespace anatomesh

@@ -1,0 +1,266 @@
+#include <itkGDCMImageIO.h>
+#include <itkGDCMSeriesFileNames.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "anatomesh/errors.h"
+#include "anatomesh/io.h"
+#include "base/vec.h"
+#include "io/file_checks.h"
+#include "io/image_geometry.h"
+#include "io/itk_session.h"
+#include "io/label_image_frame.h"
+#include "io/muted_stderr.h"
+#include "io/nifti_header.h"
+#include "io/nifti_image.h"
+#include "io/output_file.h"
+#include "io/voxel_type.h"
+
+namespace anatomesh {
+namespace fs = std::filesystem;
+
+namespace {
+
+/// ITK's names for the types of voxels.
+struct Component {
+  itk::IOComponentEnum component;
+  NumberType type;
+};
+
+static_assert(sizeof(long) == 8 && sizeof(long long) == 8);
+
+constexpr std::array<Component, 12> kComponents = {{{itk::IOComponentEnum::UCHAR, NumberType::u8},
+                                                    {itk::IOComponentEnum::CHAR, NumberType::i8},
+                                                    {itk::IOComponentEnum::USHORT, NumberType::u16},
+                                                    {itk::IOComponentEnum::SHORT, NumberType::i16},
+                                                    {itk::IOComponentEnum::UINT, NumberType::u32},
+                                                    {itk::IOComponentEnum::INT, NumberType::i32},
+                                                    {itk::IOComponentEnum::ULONG, NumberType::u64},
+                                                    {itk::IOComponentEnum::LONG, NumberType::i64},
+                                                    {itk::IOComponentEnum::ULONGLONG, NumberType::u64},
+                                                    {itk::IOComponentEnum::LONGLONG, NumberType::i64},
+                                                    {itk::IOComponentEnum::FLOAT, NumberType::f32},
+                                                    {itk::IOComponentEnum::DOUBLE, NumberType::f64}}};
+
+NumberType voxel_type_of(const fs::path& path, const itk::ImageIOBase& io) {
+  if (io.GetNumberOfComponents() != 1 || io.GetPixelType() != itk::IOPixelEnum::SCALAR) {
+    throw InvalidInput(in_quotes(path) + " has " + number_text(io.GetNumberOfComponents()) + " numbers a voxel (" +
+                       itk::ImageIOBase::GetPixelTypeAsString(io.GetPixelType()) + "); one label a voxel is needed");
+  }
+  const auto found = std::find_if(kComponents.begin(), kComponents.end(),
+                                  [&](const Component& c) { return c.component == io.GetComponentType(); });
+  if (found != kComponents.end()) return found->type;
+  throw InvalidInput(in_quotes(path) + " has voxels of type " +
+                     itk::ImageIOBase::GetComponentTypeAsString(io.GetComponentType()) +
+                     "; one label a voxel is needed, an integer of 8 to 64 bits or a float that is a whole number");
+}
+
+std::string size_text(const itk::ImageIOBase& io) {
+  std::string text;
+  for (unsigned axis = 0; axis < io.GetNumberOfDimensions(); ++axis) {
+    text += (axis == 0 ? "" : " x ") + number_text(io.GetDimensions(axis));
+  }
+  return text;
+}
+
+/// The size of a 3D image; throws for any other, and for one without voxels.
+std::array<std::size_t, 3> size_of(const fs::path& path, const itk::ImageIOBase& io) {
+  const unsigned dimensions = io.GetNumberOfDimensions();
+  const bool is_3d = dimensions >= 3 && [&] {
+    for (unsigned axis = 3; axis < dimensions; ++axis) {
+      if (io.GetDimensions(axis) != 1) return false;
+    }
+    return true;
+  }();
+  if (!is_3d) {
+    throw InvalidInput(in_quotes(path) + " is a " + number_text(dimensions) + "D image (" + size_text(io) +
+                       "); one 3D image is needed");
+  }
+  const std::array<std::size_t, 3> size = {io.GetDimensions(0), io.GetDimensions(1), io.GetDimensions(2)};
+  if (size[0] == 0 || size[1] == 0 || size[2] == 0) {
+    throw InvalidInput(in_quotes(path) + " has the size " + size_text(io) + "; at least one voxel is needed");
+  }
+  return size;
+}
+
+ImageGeometry geometry_of(const itk::ImageIOBase& io) {
+  ImageGeometry g;
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    g.spacing_mm[axis] = io.GetSpacing(axis);
+    g.origin_mm[axis] = io.GetOrigin(axis);
+    const std::vector<double> direction = io.GetDirection(axis);
+    for (unsigned row = 0; row < 3; ++row) g.direction[row][axis] = direction[row];
+  }
+  return g;
+}
+
+/// Runs a call into ITK; its exceptions become an IoError that names the file.
+template <typename Call>
+void call_itk(const fs::path& path, const char* what_failed, Call&& call) {
+  const std::string sentence_start = in_quotes(path) + " is truncated or damaged: " + what_failed;
+  try {
+    call();
+  } catch (const itk::ExceptionObject& error) {
+    throw IoError(sentence_start + " (" + description(error) + ")");
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw IoError(sentence_start + " (" + error.what() + ")");
+  }
+}
+
+void read_header(const fs::path& path, itk::ImageIOBase& io) {
+  io.SetFileName(path.string());
+  call_itk(path, "its header cannot be read", [&] { io.ReadImageInformation(); });
+}
+
+/// Reads all voxels of the file that io has the header of. place says where they belong.
+void read_voxels(const VoxelPlace& place, itk::ImageIOBase& io, Label* labels) {
+  const NumberType type = voxel_type_of(place.path, io);
+  const auto count = static_cast<std::size_t>(io.GetImageSizeInPixels());
+  itk::ImageIORegion region(io.GetNumberOfDimensions());
+  for (unsigned axis = 0; axis < io.GetNumberOfDimensions(); ++axis) region.SetSize(axis, io.GetDimensions(axis));
+  io.SetIORegion(region);
+  std::vector<std::byte> buffer(bytes_of(type) == sizeof(Label) ? 0 : count * bytes_of(type));
+  void* const values = buffer.empty() ? static_cast<void*>(labels) : buffer.data();
+  call_itk(place.path, "its voxels cannot be read", [&] { io.Read(values); });
+  store_voxels(place, type, {}, values, count, labels);
+}
+
+/// A compressed file cannot hold more than 1032 times its size (zlib), an uncompressed one no more than
+/// its size: a header that declares more is not worth reserving memory for.
+void require_plausible_size(const fs::path& path, const itk::ImageIOBase& io) {
+  constexpr double kMostCompression = 1032;
+  const double declared = static_cast<double>(io.GetImageSizeInBytes());
+  const double present = static_cast<double>(fs::file_size(path));
+  const bool has_detached_voxels = [&] {
+    constexpr std::array kDetached = {".hdr", ".hdr.gz", ".mhd", ".nhdr"};
+    return std::find(kDetached.begin(), kDetached.end(), file_extension(path)) != kDetached.end();
+  }();
+  if (has_detached_voxels || declared <= kMostCompression * present) return;
+  throw IoError(in_quotes(path) + " is truncated or damaged: its " + number_text(present) +
+                " bytes cannot hold the voxels of " + size_text(io));
+}
+
+itk::ImageIOBase::Pointer format_of(const fs::path& path) {
+  for (const auto& format : image_formats()) {
+    if (format->CanReadFile(path.c_str())) return format;
+  }
+  constexpr std::array kOwn = {".nii",  ".nii.gz", ".hdr", ".img", ".img.gz", ".nrrd",
+                               ".nhdr", ".mha",    ".mhd", ".mnc", ".dcm"};
+  if (std::find(kOwn.begin(), kOwn.end(), file_extension(path)) != kOwn.end()) {
+    throw IoError(in_quotes(path) + " is truncated, damaged or not in the format of its extension");
+  }
+  throw InvalidInput(in_quotes(path) +
+                     " is not an image in a known format; NIfTI, Analyze, NRRD, MetaImage, MINC and a folder "
+                     "with a DICOM series can be read");
+}
+
+ImageFile read_single_file(const fs::path& path, const ItkSession& itk_session) {
+  check_before_itk(path);
+  std::optional<MutedStderr> muted;
+  if (is_read_by_printing_library(path)) muted.emplace();
+  const itk::ImageIOBase::Pointer io = format_of(path);
+  read_header(path, *io);
+  const std::array<std::size_t, 3> size = size_of(path, *io);
+  if (dynamic_cast<itk::GDCMImageIO*>(io.GetPointer()) != nullptr) {
+    if (size[2] == 1) {
+      throw InvalidInput(in_quotes(path) + " is one slice of a DICOM series; give the folder with all its slices");
+    }
+    check_dicom_pixels(path, size[0] * size[1] * size[2]);
+  }
+  const NumberType type = voxel_type_of(path, *io);
+  require_plausible_size(path, *io);
+  ImageFile file;
+  file.image = blank_image(path, size, geometry_of(*io), bytes_of(type));
+  read_voxels({path, size}, *io, file.image.voxels.data());
+  for (const std::string& warning : itk_session.warnings()) file.notes.push_back(in_quotes(path) + ": " + warning);
+  return file;
+}
+
+/// The files of the only series in a folder, in the order of their positions.
+std::vector<std::string> series_files(const fs::path& folder) {
+  const auto names = itk::GDCMSeriesFileNames::New();
+  names->SetUseSeriesDetails(false);
+  names->SetInputDirectory(folder.string());
+  const std::vector<std::string> series = names->GetSeriesUIDs();
+  if (series.size() == 1) return names->GetFileNames(series.front());
+  if (series.empty()) throw InvalidInput("the folder " + in_quotes(folder) + " holds no DICOM series");
+  std::string list;
+  for (const std::string& uid : series) {
+    list += "\n  " + uid + " (" + number_text(names->GetFileNames(uid).size()) + " files)";
+  }
+  throw InvalidInput("the folder " + in_quotes(folder) + " holds " + number_text(series.size()) +
+                     " DICOM series; leave one of them in a folder of its own:" + list);
+}
+
+/// The geometry of a stack of slices from those of its single slices, which must be equally spaced.
+ImageGeometry stack_geometry(const fs::path& folder, const std::vector<ImageGeometry>& slices) {
+  ImageGeometry stack = slices.front();
+  const double last = static_cast<double>(slices.size() - 1);
+  const Vec3 step = (1 / last) * (slices.back().origin_mm - stack.origin_mm);
+  stack.spacing_mm.z = norm(step);
+  for (std::size_t row = 0; row < 3; ++row) stack.direction[row][2] = step[row] / stack.spacing_mm.z;
+  constexpr double kUnevenness = 0.01;  // of the spacing; scanners round positions to some digits
+  for (std::size_t n = 0; n < slices.size(); ++n) {
+    const Vec3 expected = stack.origin_mm + static_cast<double>(n) * step;
+    const double off = norm(slices[n].origin_mm - expected);
+    if (off <= kUnevenness * stack.spacing_mm.z) continue;
+    throw InvalidInput("slice " + number_text(n + 1) + " of the DICOM series in " + in_quotes(folder) + " is " +
+                       number_text(off) + " mm off an even spacing of " + number_text(stack.spacing_mm.z) +
+                       " mm; a slice may be missing");
+  }
+  return stack;
+}
+
+ImageFile read_dicom_series(const fs::path& folder) {
+  const std::vector<std::string> files = series_files(folder);
+  std::vector<itk::ImageIOBase::Pointer> slices;
+  std::vector<ImageGeometry> geometries;
+  for (const std::string& file : files) {
+    slices.push_back(itk::GDCMImageIO::New().GetPointer());
+    read_header(file, *slices.back());
+    geometries.push_back(geometry_of(*slices.back()));
+  }
+  std::array<std::size_t, 3> size = size_of(files.front(), *slices.front());
+  if (files.size() == 1 && size[2] == 1) {
+    throw InvalidInput("the DICOM series in " + in_quotes(folder) + " has a single slice; a 3D image is needed");
+  }
+  for (std::size_t n = 1; n < files.size(); ++n) {
+    if (size_of(files[n], *slices[n]) == std::array<std::size_t, 3>{size[0], size[1], 1}) continue;
+    throw InvalidInput(in_quotes(files[n]) + " is a slice of " + size_text(*slices[n]) +
+                       " where the others of its series "
+                       "are " +
+                       size_text(*slices.front()) + "; all must be alike");
+  }
+  const std::size_t slice_voxels = size[0] * size[1] * size[2];
+  ImageGeometry geometry = geometries.front();
+  if (files.size() > 1) {
+    geometry = stack_geometry(folder, geometries);
+    size[2] = files.size();
+  }
+  ImageFile file;
+  file.image = blank_image(folder, size, geometry, 0);  // the slices come one by one
+  for (std::size_t n = 0; n < files.size(); ++n) {
+    check_dicom_pixels(files[n], slice_voxels);
+    read_voxels({files[n], size, n * slice_voxels}, *slices[n], file.image.voxels.data() + n * slice_voxels);
+  }
+  return file;
+}
+
+}  // namespace
+
+ImageFile read_label_image(const fs::path& path) {
+  require_readable(path);
+  if (fs::is_regular_file(path) && is_nifti_file(path)) return read_nifti_image(path);
+  const ItkSession itk_session;
+  if (fs::is_directory(path)) return read_dicom_series(path);
+  return read_single_file(path, itk_session);
+}
+
+}  // namespace anatomesh
