@@ -162,13 +162,20 @@ std::vector<Part> list_parts(const TissueMesh& mesh) {
   return parts;
 }
 
-Mesh prepare(const TetMesh& given, const std::vector<Label>& image_labels) {
+Mesh prepare(const TetMesh& given, const std::vector<Label>& image_labels, const std::stop_token& cancel) {
+  const auto go_on = [&] {
+    if (cancel.stop_requested()) throw Cancelled();
+  };
   Mesh mesh;
   mesh.tissues = make_tissue_mesh(given, image_labels);
   mesh.stars = make_vertex_stars(mesh.tissues);
+  go_on();
   mesh.measures = measure_tets(mesh.tissues);
+  go_on();
   mesh.neighbours = find_neighbours(mesh.tissues, mesh.stars);
+  go_on();
   mesh.skeletons = find_skeletons(mesh.tissues, mesh.stars);
+  go_on();
   mesh.components = count_components(mesh.tissues, mesh.neighbours);
   return mesh;
 }
@@ -242,7 +249,7 @@ Assessment assess(const TetMesh& given, const LabelImage* image, const AssessOpt
 
   Watch watch(progress);
   watch.stage("quality", 0);
-  const Mesh mesh = prepare(given, image == nullptr ? std::vector<Label>{} : labels_of(*image));
+  const Mesh mesh = prepare(given, image == nullptr ? std::vector<Label>{} : labels_of(*image), progress.cancel);
   watch.stage("conformity", 0.1);
   result.conformity = conformity_of(mesh);
   std::optional<Image> seen;

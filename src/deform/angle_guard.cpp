@@ -5,6 +5,9 @@
 namespace anatomesh {
 namespace {
 
+// A move shorter than this share of an edge is not worth its tests.
+constexpr double kStill = 0.01;
+
 constexpr ShapeBounds kCushionBounds = {1, -1, 0.05};
 
 std::array<Vec3, 4> corners_with(const TissueMesh& mesh, TetId t, VertexId moved, Vec3 p) {
@@ -30,7 +33,7 @@ bool AngleGuard::fits(VertexId v, Vec3 p) const {
   for (const TetId t : topology_.tets_of_vertex[v]) {
     const auto [a, b, c, d] = corners_with(mesh_, t, v, p);
     const ShapeBounds& bounds = mesh_.tissues[t] == 0 ? kCushionBounds : bounds_;
-    if (!bounds.hold(measure_shape(a, b, c, d))) return false;
+    if (!within(bounds, a, b, c, d)) return false;
   }
   return true;
 }
@@ -52,11 +55,11 @@ double AngleGuard::slack(VertexId v, Vec3 p) const {
   double worst = 1;
   for (const TetId t : topology_.tets_of_vertex[v]) {
     const auto [a, b, c, d] = corners_with(mesh_, t, v, p);
-    const ShapeMeasure s = measure_shape(a, b, c, d);
     if (mesh_.tissues[t] == 0) {
-      if (!kCushionBounds.hold(s)) return -1;
+      if (!within(kCushionBounds, a, b, c, d)) return -1;
       continue;
     }
+    const ShapeMeasure s = measure_shape(a, b, c, d);
     worst = std::min({worst, bounds_.largest_cos - s.largest_cos, s.smallest_cos - bounds_.smallest_cos,
                       s.mean_ratio - bounds_.min_mean_ratio});
   }
@@ -78,7 +81,8 @@ void relax_interior(TissueMesh& mesh, const MeshTopology& topology, const AngleG
     Vec3 mean;
     for (const VertexId w : topology.neighbours[v]) mean += mesh.points_mm[w];
     mean = (1.0 / static_cast<double>(topology.neighbours[v].size())) * mean;
-    const Vec3 from = mesh.points_mm[v];
+    const Vec3 from = mesh.points_mm[v], edge = mesh.points_mm[topology.neighbours[v][0]] - from;
+    if (norm_squared(mean - from) < kStill * kStill * norm_squared(edge)) return;
     const double before = guard.slack(v, from);
     for (const double share : {1.0, 0.3}) {
       const Vec3 at = from + share * (mean - from);

@@ -41,8 +41,12 @@ const StoredType& smallest_type(const std::vector<Label>& labels) {
 }
 
 itk::ImageIOBase::Pointer format_for_writing(const std::filesystem::path& path) {
-  for (const auto& format : image_formats()) {
-    if (format->CanWriteFile(path.c_str())) return format;
+  // Formats of one file only: two cannot be put in place at once.
+  constexpr std::array kExtensions = {".nii", ".nii.gz", ".nrrd", ".mha", ".mnc"};
+  if (std::find(kExtensions.begin(), kExtensions.end(), file_extension(path)) != kExtensions.end()) {
+    for (const auto& format : image_formats()) {
+      if (format->CanWriteFile(path.c_str())) return format;
+    }
   }
   throw InvalidInput("cannot write the image " + in_quotes(path) +
                      ": the extension must be one of .nii, .nii.gz, .nrrd, .mha, .mnc");

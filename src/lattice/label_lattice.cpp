@@ -2,19 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 #include <string>
-#include <unordered_map>
 
 #include "base/parallel.h"
 #include "base/vec.h"
+#include "lattice/clean_labels.h"
 #include "lattice/red_green.h"
 #include "lattice/voxel_votes.h"
 
 namespace anatomesh {
 namespace {
-
-constexpr std::int32_t kMaxCoordinate = 1 << 20;
 
 // Where the lattice lies over the image.
 struct Placement {
@@ -31,7 +28,7 @@ Placement place_lattice(const TissueImage& image, const LatticePlan& plan) {
     const double voxels = image.size[a] - 2 * TissueImage::kBorder;
     const double extent = voxels * image.spacing_mm[a];
     const double cells = std::ceil(extent / plan.bcc_size_mm) + 2;
-    if (cells * 4 * std::ldexp(1.0, plan.levels + plan.extra_levels) > kMaxCoordinate) {
+    if (cells * 4 * std::ldexp(1.0, plan.levels + plan.extra_levels) > LatticePointMap::kMaxCoordinate) {
       throw InvalidInput("a lattice of " + std::to_string(plan.bcc_size_mm) + " mm over " + std::to_string(extent) +
                          " mm of image is too large; take a larger bcc_size");
     }
@@ -42,34 +39,10 @@ Placement place_lattice(const TissueImage& image, const LatticePlan& plan) {
   return place;
 }
 
-std::vector<TetRef> leaves_of(const RedGreenLattice& lattice) {
-  std::vector<TetRef> leaves;
-  for (int level = 0; level <= lattice.max_level(); ++level) {
-    for (const TetRef t : lattice.tets_of_level(level)) {
-      if (lattice.is_leaf(t)) leaves.push_back(t);
-    }
-  }
-  return leaves;
-}
-
-// Fidelity, and which tissues have a tetrahedron at all.
-struct Score {
-  std::vector<LatticeFidelity> fidelity;
-  std::vector<std::uint64_t> tets;
-
-  explicit Score(std::size_t tissues) : fidelity(tissues), tets(tissues) {}
-  void add(const Vote& v) {
-    fidelity[v.tissue].in_tets += v.count;
-    fidelity[v.tissue].hits += v.hits;
-    ++tets[v.tissue];
-  }
-  void add(const Score& other) {
-    for (std::size_t t = 0; t < tets.size(); ++t) {
-      fidelity[t].in_tets += other.fidelity[t].in_tets;
-      fidelity[t].hits += other.fidelity[t].hits;
-      tets[t] += other.tets[t];
-    }
-  }
+// A leaf and the votes of its parts: one, or those of its green split.
+struct VotedLeaf {
+  TetRef tet;
+  std::array<Vote, 4> votes;
 };
 
 class LabelLattice {
@@ -77,67 +50,100 @@ class LabelLattice {
   LabelLattice(const TissueImage& image, const LatticePlan& plan)
       : image_(image),
         plan_(plan),
+        target_(plan.fidelity),
         place_(place_lattice(image, plan)),
         lattice_(place_.cells, plan.levels + plan.extra_levels),
         votes_(image, lattice_, place_.origin_mm, place_.unit_mm) {}
 
-  void refine_until_faithful(const Stage& stage);
+  /// Returns whether anything was refined.
+  bool refine_until_faithful(const Stage& stage);
   LabelledLattice extract() const;
+  void raise_targets(const std::vector<LatticeFidelity>& reached);
 
  private:
-  Score score(const std::vector<TetRef>& leaves) const;
-  std::vector<TetRef> leaves_to_refine(const std::vector<TetRef>& leaves, const Score& score) const;
+  void collect_leaves();
+  std::vector<LatticeFidelity> inherited_fidelity() const;
+  std::vector<int> level_limits() const;
   bool wants_refinement(TetRef leaf, const std::vector<int>& level_limit) const;
   template <class Visit>
-  void visit_parts(TetRef leaf, const Visit& visit) const;
+  void visit_parts(const VotedLeaf& leaf, const Visit& visit) const;
 
   const TissueImage& image_;
   const LatticePlan& plan_;
+  std::vector<double> target_;  // fidelity to reach before the removal of label noise, by tissue
   Placement place_;
   RedGreenLattice lattice_;
   VoxelVotes votes_;
+  std::vector<VotedLeaf> leaves_;
 };
 
-// Calls visit(vote, nodes) for a leaf, or for each of its green parts.
+// Calls visit(vote, nodes, part) for a leaf, or for each of its green parts.
 template <class Visit>
-void LabelLattice::visit_parts(TetRef leaf, const Visit& visit) const {
-  const unsigned mask = lattice_.split_edges(leaf);
-  const GreenSplit& split = green_split(mask);
-  if (mask == 0) return visit(votes_.vote(leaf), split.tets[0]);
-  const auto votes = votes_.green_votes(leaf);
-  for (std::size_t c = 0; c < static_cast<std::size_t>(split.count); ++c) visit(votes[c], split.tets[c]);
+void LabelLattice::visit_parts(const VotedLeaf& leaf, const Visit& visit) const {
+  const GreenSplit& split = green_split(lattice_.split_edges(leaf.tet));
+  for (std::size_t c = 0; c < static_cast<std::size_t>(split.count); ++c) visit(leaf.votes[c], split.tets[c], c);
 }
 
-Score LabelLattice::score(const std::vector<TetRef>& leaves) const {
-  Score total(image_.labels.size());
-  std::mutex mutex;
-  parallel_blocks(leaves.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
-    Score part(image_.labels.size());
-    for (std::size_t i = begin; i < end; ++i) visit_parts(leaves[i], [&](const Vote& v, const auto&) { part.add(v); });
-    const std::scoped_lock lock(mutex);
-    total.add(part);
-  });
-  // What refined pure tetrahedra handed down without counting.
-  for (int level = 0; level < lattice_.max_level(); ++level) {
-    for (const TetRef t : lattice_.tets_of_level(level)) {
-      if (!lattice_.is_refined(t) || !votes_.hands_label_down(t)) continue;
-      total.fidelity[votes_.vote(t).tissue].in_tets += votes_.vote(t).count;
-      total.fidelity[votes_.vote(t).tissue].hits += votes_.vote(t).hits;
+void LabelLattice::collect_leaves() {
+  leaves_.clear();
+  for (int level = 0; level <= lattice_.max_level(); ++level) {
+    for (std::uint32_t slot = 0; slot < lattice_.slot_count(level); ++slot) {
+      if (lattice_.is_leaf({level, slot})) leaves_.push_back({{level, slot}, {}});
     }
   }
-  for (std::size_t t = 0; t < image_.counts.size(); ++t) total.fidelity[t].voxels = image_.counts[t];
-  return total;
+  parallel_for(leaves_.size(), [&](std::size_t i) {
+    VotedLeaf& leaf = leaves_[i];
+    if (lattice_.split_edges(leaf.tet) == 0) {
+      leaf.votes[0] = votes_.vote(leaf.tet);
+    } else {
+      leaf.votes = votes_.green_votes(leaf.tet);
+    }
+  });
 }
 
-// A leaf is refined when the boundary of a tissue that falls short passes between its voxels.
+// Voxels of the pure tetrahedra that handed their label down without counting.
+std::vector<LatticeFidelity> LabelLattice::inherited_fidelity() const {
+  std::vector<LatticeFidelity> fidelity(image_.labels.size());
+  for (std::size_t t = 0; t < fidelity.size(); ++t) fidelity[t].voxels = image_.counts[t];
+  for (int level = 0; level < lattice_.max_level(); ++level) {
+    for (std::uint32_t slot = 0; slot < lattice_.slot_count(level); ++slot) {
+      const TetRef t = {level, slot};
+      if (!lattice_.exists(t) || !lattice_.is_refined(t) || !votes_.hands_label_down(t)) continue;
+      fidelity[votes_.vote(t).tissue].in_tets += votes_.vote(t).count;
+      fidelity[votes_.vote(t).tissue].hits += votes_.vote(t).hits;
+    }
+  }
+  return fidelity;
+}
+
+// By tissue: its boundary is refined in tetrahedra above this level. 0: not at all.
+std::vector<int> LabelLattice::level_limits() const {
+  std::vector<LatticeFidelity> fidelity = inherited_fidelity();
+  std::vector<char> present(fidelity.size(), 0);
+  for (const VotedLeaf& leaf : leaves_) {
+    visit_parts(leaf, [&](const Vote& v, const auto&, std::size_t) {
+      fidelity[v.tissue].in_tets += v.count;
+      fidelity[v.tissue].hits += v.hits;
+      present[v.tissue] = 1;
+    });
+  }
+  std::vector<int> limit(fidelity.size(), 0);
+  for (std::size_t t = 1; t < limit.size(); ++t) {
+    const LatticeFidelity& f = fidelity[t];
+    if (f.f1() < target_[t] || f.f2() < target_[t]) limit[t] = plan_.levels;
+    if (!present[t]) limit[t] = lattice_.max_level();
+  }
+  return limit;
+}
+
+// A leaf is refined when the boundary of a tissue that falls short passes between its voxels, or when it holds
+// a voxel of a tissue that no tetrahedron has taken yet.
 bool LabelLattice::wants_refinement(TetRef leaf, const std::vector<int>& level_limit) const {
   const auto voxels = votes_.voxels(leaf);
-  if (voxels.size() < 2)
-    return !voxels.empty() && level_limit[image_.voxels[voxels[0]]] > plan_.levels &&
-           leaf.level < level_limit[image_.voxels[voxels[0]]];
+  if (voxels.empty()) return false;
   const TissueId first = image_.voxels[voxels[0]];
   bool mixed = false;
-  int limit = level_limit[first];
+  int limit = 0;
   for (const std::uint32_t v : voxels) {
     mixed = mixed || image_.voxels[v] != first;
     limit = std::max(limit, level_limit[image_.voxels[v]]);
@@ -145,57 +151,30 @@ bool LabelLattice::wants_refinement(TetRef leaf, const std::vector<int>& level_l
   return (mixed || limit > plan_.levels) && leaf.level < limit;
 }
 
-std::vector<TetRef> LabelLattice::leaves_to_refine(const std::vector<TetRef>& leaves, const Score& score) const {
-  std::vector<int> level_limit(image_.labels.size(), 0);  // refine below this level only
-  for (std::size_t t = 1; t < level_limit.size(); ++t) {
-    const LatticeFidelity& f = score.fidelity[t];
-    if (f.f1() < plan_.fidelity[t] || f.f2() < plan_.fidelity[t]) level_limit[t] = plan_.levels;
-    if (score.tets[t] == 0) level_limit[t] = lattice_.max_level();
-  }
-  std::vector<char> wanted(leaves.size());
-  parallel_for(leaves.size(), [&](std::size_t i) { wanted[i] = wants_refinement(leaves[i], level_limit); });
-  std::vector<TetRef> marked;
-  for (std::size_t i = 0; i < leaves.size(); ++i) {
-    if (wanted[i]) marked.push_back(leaves[i]);
-  }
-  return marked;
-}
-
-void LabelLattice::refine_until_faithful(const Stage& stage) {
+bool LabelLattice::refine_until_faithful(const Stage& stage) {
   for (int round = 0;; ++round) {
-    const std::vector<TetRef> leaves = leaves_of(lattice_);
-    const std::vector<TetRef> marked = leaves_to_refine(leaves, score(leaves));
-    if (marked.empty()) return;
+    collect_leaves();
+    const std::vector<int> level_limit = level_limits();
+    std::vector<char> wanted(leaves_.size());
+    parallel_for(leaves_.size(), [&](std::size_t i) { wanted[i] = wants_refinement(leaves_[i].tet, level_limit); });
+    std::vector<TetRef> marked;
+    for (std::size_t i = 0; i < leaves_.size(); ++i) {
+      if (wanted[i]) marked.push_back(leaves_[i].tet);
+    }
+    if (marked.empty()) return round > 0;
+    stage.check_cancelled();
     votes_.descend(lattice_.refine(marked));
     stage.at(std::min(0.9, 0.2 * (round + 1)));
   }
 }
 
-std::uint64_t pack(const LatticePoint& p) {
-  return static_cast<std::uint64_t>(p[0] + kMaxCoordinate) | static_cast<std::uint64_t>(p[1] + kMaxCoordinate) << 21 |
-         static_cast<std::uint64_t>(p[2] + kMaxCoordinate) << 42;
-}
-
-// Numbers lattice points in the order in which they are first asked for.
-class VertexNumbers {
- public:
-  explicit VertexNumbers(std::size_t expected) { ids_.reserve(expected); }
-  VertexId operator()(const LatticePoint& p) {
-    const auto [at, fresh] = ids_.try_emplace(pack(p), static_cast<VertexId>(points.size()));
-    if (fresh) points.push_back(p);
-    return at->second;
+// What the removal of label noise took from a tissue is asked for on top.
+void LabelLattice::raise_targets(const std::vector<LatticeFidelity>& reached) {
+  for (std::size_t t = 1; t < target_.size(); ++t) {
+    const double lacking = plan_.fidelity[t] - std::min(reached[t].f1(), reached[t].f2());
+    if (lacking > 0) target_[t] = std::min(1.0, target_[t] + lacking);
   }
-  bool knows(const LatticePoint& p) const { return ids_.contains(pack(p)); }
-  std::vector<LatticePoint> points;
-
- private:
-  struct Hash {
-    std::size_t operator()(std::uint64_t key) const {
-      return static_cast<std::size_t>(key * 0x9e3779b97f4a7c15ULL >> 16);
-    }
-  };
-  std::unordered_map<std::uint64_t, VertexId, Hash> ids_;
-};
+}
 
 // Nodes 0 .. 9 of a leaf (vertices, edge midpoints), in units of the finest level.
 std::array<LatticePoint, 10> leaf_nodes(const RedGreenLattice& lattice, TetRef leaf) {
@@ -210,52 +189,102 @@ std::array<LatticePoint, 10> leaf_nodes(const RedGreenLattice& lattice, TetRef l
   return nodes;
 }
 
-LabelledLattice LabelLattice::extract() const {
-  const std::vector<TetRef> leaves = leaves_of(lattice_);
-  LabelledLattice result;
-  result.fidelity = score(leaves).fidelity;
-  TissueMesh& mesh = result.mesh;
-  VertexNumbers number(leaves.size() / 4);
-  const auto add_tet = [&](const std::array<LatticePoint, 10>& nodes, const std::array<std::uint8_t, 4>& corner,
-                           bool positive, TissueId tissue) {
+// Where a tetrahedron of the mesh comes from.
+struct Origin {
+  TetRef leaf;
+  std::uint32_t part;
+  Vote vote;
+};
+
+// Tetrahedra of the lattice, with numbered vertices.
+struct Extraction {
+  TissueMesh mesh;
+  std::vector<Origin> origins;  // one a tetrahedron
+  LatticePointMap vertices;
+
+  void add(const std::array<LatticePoint, 10>& nodes, const std::array<std::uint8_t, 4>& corners, bool positive,
+           const Origin& origin) {
     std::array<VertexId, 4> tet;
-    for (std::size_t n = 0; n < 4; ++n) tet[n] = number(nodes[corner[n]]);
+    for (std::size_t n = 0; n < 4; ++n) tet[n] = vertices.insert(nodes[corners[n]]);
     if (!positive) std::swap(tet[2], tet[3]);
     mesh.tets.push_back(tet);
-    mesh.tissues.push_back(tissue);
-  };
-  for (const TetRef leaf : leaves) {
-    const auto nodes = leaf_nodes(lattice_, leaf);
-    const bool positive = is_positive(lattice_.barycentre(leaf));
-    visit_parts(leaf, [&](const Vote& v, const auto& corner) {
-      if (v.tissue != 0) add_tet(nodes, corner, positive, v.tissue);
-    });
+    mesh.tissues.push_back(origin.vote.tissue);
+    origins.push_back(origin);
   }
-  const VertexNumbers on_tissue = number;
-  for (const TetRef leaf : leaves) {
-    const auto nodes = leaf_nodes(lattice_, leaf);
-    const bool positive = is_positive(lattice_.barycentre(leaf));
-    visit_parts(leaf, [&](const Vote& v, const auto& corner) {
-      const bool touches = std::any_of(corner.begin(), corner.end(), [&](auto n) { return on_tissue.knows(nodes[n]); });
-      if (v.tissue == 0 && touches) add_tet(nodes, corner, positive, 0);
-    });
+};
+
+// Brings the tissues' tetrahedra before the cushion's, and their vertices before its.
+TissueMesh cushion_last(const TissueMesh& mesh) {
+  TissueMesh sorted;
+  std::vector<VertexId> number(mesh.points_mm.size(), static_cast<VertexId>(-1));
+  for (const bool cushion : {false, true}) {
+    for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+      if ((mesh.tissues[t] == 0) != cushion) continue;
+      std::array<VertexId, 4> tet = mesh.tets[t];
+      for (VertexId& v : tet) {
+        if (number[v] == static_cast<VertexId>(-1)) {
+          number[v] = static_cast<VertexId>(sorted.points_mm.size());
+          sorted.points_mm.push_back(mesh.points_mm[v]);
+        }
+        v = number[v];
+      }
+      sorted.tets.push_back(tet);
+      sorted.tissues.push_back(mesh.tissues[t]);
+    }
+  }
+  return sorted;
+}
+
+LabelledLattice LabelLattice::extract() const {
+  Extraction taken;
+  std::uint32_t tissue_vertices = 0;
+  for (const bool cushion : {false, true}) {
+    for (const VotedLeaf& leaf : leaves_) {
+      const auto nodes = leaf_nodes(lattice_, leaf.tet);
+      const bool positive = is_positive(lattice_.barycentre(leaf.tet));
+      visit_parts(leaf, [&](const Vote& v, const auto& corners, std::size_t part) {
+        const auto on_tissue = [&](std::uint8_t n) { return taken.vertices.find(nodes[n]) < tissue_vertices; };
+        if ((v.tissue == 0) != cushion) return;
+        if (cushion && std::none_of(corners.begin(), corners.end(), on_tissue)) return;
+        taken.add(nodes, corners, positive, {leaf.tet, static_cast<std::uint32_t>(part), v});
+      });
+    }
+    if (!cushion) tissue_vertices = static_cast<std::uint32_t>(taken.vertices.points().size());
   }
   const double fine_unit = place_.unit_mm / static_cast<double>(1 << lattice_.max_level());
-  mesh.points_mm.reserve(number.points.size());
-  for (const LatticePoint& p : number.points) {
-    mesh.points_mm.push_back(place_.origin_mm + Vec3{fine_unit * p[0], fine_unit * p[1], fine_unit * p[2]});
+  for (const LatticePoint& p : taken.vertices.points()) {
+    taken.mesh.points_mm.push_back(place_.origin_mm + Vec3{fine_unit * p[0], fine_unit * p[1], fine_unit * p[2]});
   }
+  const auto has_weak_vote = [&](TetId t) { return taken.origins[t].vote.hits < VoxelVotes::kQuorum / 2; };
+  clean_labels(taken.mesh, has_weak_vote);
+
+  LabelledLattice result;
+  result.fidelity = inherited_fidelity();
+  for (std::size_t t = 0; t < taken.origins.size(); ++t) {
+    const Origin& origin = taken.origins[t];
+    const TissueId tissue = taken.mesh.tissues[t];
+    const bool kept = tissue == origin.vote.tissue;
+    result.fidelity[tissue].in_tets += origin.vote.count;
+    result.fidelity[tissue].hits += kept ? origin.vote.hits : votes_.voxels_of(origin.leaf, origin.part, tissue);
+  }
+  result.mesh = cushion_last(taken.mesh);
   return result;
 }
 
 }  // namespace
 
 LabelledLattice build_labelled_lattice(const TissueImage& image, const LatticePlan& plan, const Stage& stage) {
+  constexpr int kAttempts = 3;
   LabelLattice lattice(image, plan);
   stage.at(0.15);
-  lattice.refine_until_faithful(stage);
-  stage.at(0.9);
-  return lattice.extract();
+  LabelledLattice result;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    if (!lattice.refine_until_faithful(stage) && attempt > 0) break;
+    result = lattice.extract();
+    lattice.raise_targets(result.fidelity);
+  }
+  stage.at(1);
+  return result;
 }
 
 }  // namespace anatomesh

@@ -6,17 +6,6 @@
 namespace anatomesh {
 namespace {
 
-constexpr std::uint64_t kEmptyKey = ~std::uint64_t{0};
-
-std::uint64_t pack(const LatticePoint& cell) {
-  const auto part = [](std::int32_t c) { return static_cast<std::uint64_t>(c + (1 << 20)); };
-  return part(cell[0]) | part(cell[1]) << 21 | part(cell[2]) << 42;
-}
-
-std::size_t hash(std::uint64_t key, std::size_t capacity) {
-  return static_cast<std::size_t>((key * 0x9e3779b97f4a7c15ULL) >> 20) & (capacity - 1);
-}
-
 // Edges of the face opposite to each vertex, as bits.
 constexpr std::array<unsigned, 4> kFaceEdges = {0b110010, 0b001110, 0b101001, 0b010101};
 // Pairs of opposite edges, as bits.
@@ -133,72 +122,36 @@ int green_child_at(unsigned mask, const std::array<double, 4>& l) {
   return child;
 }
 
-std::uint32_t RedGreenLattice::Level::find_block(const LatticePoint& cell) const {
-  if (keys.empty()) return kNone;
-  const std::uint64_t key = pack(cell);
-  for (std::size_t i = hash(key, keys.size());; i = (i + 1) & (keys.size() - 1)) {
-    if (keys[i] == key) return blocks[i];
-    if (keys[i] == kEmptyKey) return kNone;
-  }
-}
-
-void RedGreenLattice::Level::grow() {
-  const std::size_t capacity = keys.empty() ? 1024 : 2 * keys.size();
-  keys.assign(capacity, kEmptyKey);
-  blocks.assign(capacity, kNone);
-  for (std::uint32_t b = 0; b < cells.size(); ++b) {
-    const std::uint64_t key = pack(cells[b]);
-    std::size_t i = hash(key, capacity);
-    while (keys[i] != kEmptyKey) i = (i + 1) & (capacity - 1);
-    keys[i] = key;
-    blocks[i] = b;
-  }
-}
-
-std::uint32_t RedGreenLattice::Level::make_block(const LatticePoint& cell) {
-  if (const std::uint32_t found = find_block(cell); found != kNone) return found;
-  if (2 * (cells.size() + 1) > keys.size()) grow();
-  const std::uint64_t key = pack(cell);
-  std::size_t i = hash(key, keys.size());
-  while (keys[i] != kEmptyKey) i = (i + 1) & (keys.size() - 1);
-  keys[i] = key;
-  blocks[i] = static_cast<std::uint32_t>(cells.size());
-  cells.push_back(cell);
-  state.resize(state.size() + kTetsPerCell, 0);
-  return blocks[i];
-}
-
 RedGreenLattice::RedGreenLattice(std::array<std::int32_t, 3> root_cells, int max_level)
     : root_cells_(root_cells), levels_(static_cast<std::size_t>(max_level) + 1) {
   for (std::int32_t k = 0; k < root_cells[2]; ++k) {
     for (std::int32_t j = 0; j < root_cells[1]; ++j) {
       for (std::int32_t i = 0; i < root_cells[0]; ++i) {
-        const std::uint32_t block = levels_[0].make_block({i, j, k});
-        for (std::uint32_t local = 0; local < kTetsPerCell; ++local)
-          levels_[0].state[block * kTetsPerCell + local] = kExists;
+        levels_[0].blocks.insert({i, j, k});
       }
     }
   }
+  levels_[0].state.assign(levels_[0].blocks.points().size() * kTetsPerCell, kExists);
 }
 
 // The blocks of level 0 were made in this order.
 std::uint32_t RedGreenLattice::root_block(const LatticePoint& cell) const {
   for (std::size_t a = 0; a < 3; ++a) {
-    if (cell[a] < 0 || cell[a] >= root_cells_[a]) return kNone;
+    if (cell[a] < 0 || cell[a] >= root_cells_[a]) return LatticePointMap::kNone;
   }
   return static_cast<std::uint32_t>(cell[0] + root_cells_[0] * (cell[1] + root_cells_[1] * cell[2]));
 }
 
 LatticePoint RedGreenLattice::barycentre(TetRef t) const {
   const Level& level = levels_[static_cast<std::size_t>(t.level)];
-  return bcc_from_local(level.cells[t.slot / kTetsPerCell], static_cast<int>(t.slot % kTetsPerCell));
+  return bcc_from_local(level.blocks.points()[t.slot / kTetsPerCell], static_cast<int>(t.slot % kTetsPerCell));
 }
 
 bool RedGreenLattice::find(int level, const LatticePoint& b, TetRef& found) const {
   const std::uint32_t block =
-      level == 0 ? root_block(bcc_cell(b)) : levels_[static_cast<std::size_t>(level)].find_block(bcc_cell(b));
-  if (block == kNone) return false;
-  found = {level, block * kTetsPerCell + static_cast<std::uint32_t>(bcc_local_index(b))};
+      level == 0 ? root_block(bcc_cell(b)) : levels_[static_cast<std::size_t>(level)].blocks.find(bcc_cell(b));
+  if (block == LatticePointMap::kNone) return false;
+  found = {level, slot_of(block, b)};
   return exists(found);
 }
 
@@ -221,12 +174,13 @@ std::vector<TetRef> RedGreenLattice::tets_of_level(int level) const {
 bool RedGreenLattice::inside(int level, const LatticePoint& barycentre) const {
   LatticePoint b = barycentre;
   for (; level > 0; --level) b = bcc_parent(b);
-  return root_block(bcc_cell(b)) != kNone;
+  return root_block(bcc_cell(b)) != LatticePointMap::kNone;
 }
 
 TetRef RedGreenLattice::create(int level, const LatticePoint& b) {
-  const std::uint32_t block = levels_[static_cast<std::size_t>(level)].make_block(bcc_cell(b));
-  const TetRef t = {level, block * kTetsPerCell + static_cast<std::uint32_t>(bcc_local_index(b))};
+  Level& l = levels_[static_cast<std::size_t>(level)];
+  const TetRef t = {level, slot_of(l.blocks.insert(bcc_cell(b)), b)};
+  l.state.resize(l.blocks.points().size() * kTetsPerCell, 0);
   state(t) |= kExists;
   return t;
 }

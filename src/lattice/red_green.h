@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "lattice/bcc_lattice.h"
+#include "lattice/lattice_point_map.h"
 
 namespace anatomesh {
 
@@ -55,20 +56,15 @@ class RedGreenLattice {
 
  private:
   static constexpr std::uint8_t kEdges = 0x3f, kRefined = 0x40, kExists = 0x80;
-  static constexpr std::uint32_t kNone = 0xffffffff;
 
-  // Open-addressing map from lattice cubes to blocks of 12 slots.
   struct Level {
-    std::vector<std::uint64_t> keys;
-    std::vector<std::uint32_t> blocks;
-    std::vector<LatticePoint> cells;  // one a block
-    std::vector<std::uint8_t> state;  // 12 a block
-
-    std::uint32_t find_block(const LatticePoint& cell) const;
-    std::uint32_t make_block(const LatticePoint& cell);
-    void grow();
+    LatticePointMap blocks;           // lattice cubes that hold tetrahedra: 12 slots each
+    std::vector<std::uint8_t> state;  // by slot
   };
 
+  static std::uint32_t slot_of(std::uint32_t block, const LatticePoint& barycentre) {
+    return block * kTetsPerCell + static_cast<std::uint32_t>(bcc_local_index(barycentre));
+  }
   std::uint8_t state(TetRef t) const { return levels_[static_cast<std::size_t>(t.level)].state[t.slot]; }
   std::uint8_t& state(TetRef t) { return levels_[static_cast<std::size_t>(t.level)].state[t.slot]; }
   std::uint32_t root_block(const LatticePoint& cell) const;

@@ -175,9 +175,29 @@ std::span<const std::uint32_t> VoxelVotes::voxels(TetRef t) const {
                  : std::span<const std::uint32_t>();
 }
 
-std::array<Vote, 4> VoxelVotes::green_votes(TetRef leaf) const {
+// Good until the thread's next call.
+const VoxelVotes::GreenVoxels& VoxelVotes::voxels_of_green_parts(TetRef leaf) const {
+  const LatticePoint b = lattice_.barycentre(leaf);
   const unsigned mask = lattice_.split_edges(leaf);
-  const GreenSplit& split = green_split(mask);
+  thread_local GreenVoxels parts;
+  for (auto& part : parts) part.clear();
+  for (const std::uint32_t v : voxels(leaf)) {
+    const int child = green_child_at(mask, bcc_barycentric_times_4(b, position(v, leaf.level)));
+    parts[static_cast<std::size_t>(child)].push_back(v);
+  }
+  return parts;
+}
+
+std::uint32_t VoxelVotes::voxels_of(TetRef leaf, std::size_t part, TissueId tissue) const {
+  const auto has_tissue = [&](std::uint32_t v) { return image_.voxels[v] == tissue; };
+  const std::span<const std::uint32_t> all = lattice_.split_edges(leaf) == 0
+                                                 ? voxels(leaf)
+                                                 : std::span<const std::uint32_t>(voxels_of_green_parts(leaf)[part]);
+  return static_cast<std::uint32_t>(std::count_if(all.begin(), all.end(), has_tissue));
+}
+
+std::array<Vote, 4> VoxelVotes::green_votes(TetRef leaf) const {
+  const GreenSplit& split = green_split(lattice_.split_edges(leaf));
   const Vote& whole = vote(leaf);
   std::array<Vote, 4> votes;
   if (hands_label_down(leaf)) {
@@ -185,13 +205,7 @@ std::array<Vote, 4> VoxelVotes::green_votes(TetRef leaf) const {
     votes[0].count = votes[0].hits = whole.count;  // together they hold what the leaf holds
     return votes;
   }
-  const LatticePoint b = lattice_.barycentre(leaf);
-  thread_local std::array<std::vector<std::uint32_t>, 4> parts;
-  for (auto& part : parts) part.clear();
-  for (const std::uint32_t v : voxels(leaf)) {
-    const int child = green_child_at(mask, bcc_barycentric_times_4(b, position(v, leaf.level)));
-    parts[static_cast<std::size_t>(child)].push_back(v);
-  }
+  const GreenVoxels& parts = voxels_of_green_parts(leaf);
   const std::array<Vec3, 4> corners = corners_in_voxels(leaf);
   for (std::size_t c = 0; c < static_cast<std::size_t>(split.count); ++c) {
     std::array<Vec3, 4> part;

@@ -44,14 +44,21 @@ class VoxelVotes {
   /// Votes of the green parts of a leaf with split edges, in the order of green_split().
   std::array<Vote, 4> green_votes(TetRef leaf) const;
 
+  /// Voxels of a tissue in a leaf (part 0 of one without split edges) or in one of its green parts.
+  std::uint32_t voxels_of(TetRef leaf, std::size_t part, TissueId tissue) const;
+
+  // Fewer voxels than this do not vote: the interpolated image does.
+  static constexpr std::uint32_t kQuorum = 10;
+
  private:
   // A pure tetrahedron of at least this many voxels hands its label down without its voxels.
   static constexpr std::uint32_t kInheritAbove = 64;
   static constexpr std::uint32_t kInherited = ~0u;  // in begin_: inside a large pure tetrahedron
-  // Fewer voxels than this do not vote: the interpolated image does.
-  static constexpr std::uint32_t kQuorum = 10;
+
+  using GreenVoxels = std::array<std::vector<std::uint32_t>, 4>;
 
   void sort_into_roots();
+  const GreenVoxels& voxels_of_green_parts(TetRef leaf) const;
   void hand_down(TetRef parent);
   Vec3 position(std::uint32_t voxel, int level) const;
   Vote count_votes(std::span<const std::uint32_t> voxels, const std::array<Vec3, 4>& corners) const;

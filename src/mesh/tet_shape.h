@@ -40,24 +40,51 @@ struct ShapeBounds {
   }
 };
 
-/// Shape of a positively oriented tetrahedron; of any other one that breaks all bounds. Cost: about 30 ns.
+/// The parts that the measures and tests below share. Cost: about 15 ns.
+struct TetGeometry {
+  double volume6;                ///< six times the signed volume
+  double edges;                  ///< sum of the squared edges
+  std::array<double, 4> area2;   ///< twice the area of the face opposite to each vertex
+  std::array<double, 6> cosine;  ///< area-weighted: cosine of each dihedral angle times both areas2
+  std::array<double, 6> areas;   ///< the products of areas2 that go with them
+
+  TetGeometry(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
+    const Vec3 ab = b - a, ac = c - a, ad = d - a, bc = c - b, bd = d - b, cd = d - c;
+    // Outward normals of the faces opposite to a, b, c, d.
+    const Vec3 na = cross(bc, bd), nb = cross(ad, ac), nc = cross(ab, ad), nd = cross(ac, ab);
+    volume6 = -dot(nd, ad);
+    edges =
+        norm_squared(ab) + norm_squared(ac) + norm_squared(ad) + norm_squared(bc) + norm_squared(bd) + norm_squared(cd);
+    area2 = {norm(na), norm(nb), norm(nc), norm(nd)};
+    cosine = {-dot(na, nb), -dot(na, nc), -dot(na, nd), -dot(nb, nc), -dot(nb, nd), -dot(nc, nd)};
+    areas = {area2[0] * area2[1], area2[0] * area2[2], area2[0] * area2[3],
+             area2[1] * area2[2], area2[1] * area2[3], area2[2] * area2[3]};
+  }
+};
+
+/// Shape of a positively oriented tetrahedron; of any other one that breaks all bounds.
 inline ShapeMeasure measure_shape(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
-  const Vec3 ab = b - a, ac = c - a, ad = d - a, bc = c - b, bd = d - b, cd = d - c;
-  const double volume6 = dot(cross(ab, ac), ad);
-  if (!(volume6 > 0)) return {};
-  // Outward normals of the faces opposite to a, b, c, d.
-  const Vec3 na = cross(bc, bd), nb = cross(ad, ac), nc = cross(ab, ad), nd = cross(ac, ab);
-  const double la = 1 / norm(na), lb = 1 / norm(nb), lc = 1 / norm(nc), ld = 1 / norm(nd);
-  const std::array<double, 6> cosines = {-dot(na, nb) * la * lb, -dot(na, nc) * la * lc, -dot(na, nd) * la * ld,
-                                         -dot(nb, nc) * lb * lc, -dot(nb, nd) * lb * ld, -dot(nc, nd) * lc * ld};
-  ShapeMeasure shape;
-  shape.largest_cos = *std::max_element(cosines.begin(), cosines.end());
-  shape.smallest_cos = *std::min_element(cosines.begin(), cosines.end());
-  const double edges =
-      norm_squared(ab) + norm_squared(ac) + norm_squared(ad) + norm_squared(bc) + norm_squared(bd) + norm_squared(cd);
-  const double half_volume6 = 0.5 * volume6;  // = 3 V
-  shape.mean_ratio = 12 * std::cbrt(half_volume6 * half_volume6) / edges;
+  const TetGeometry g(a, b, c, d);
+  if (!(g.volume6 > 0)) return {};
+  ShapeMeasure shape{-1, 1, 0};
+  for (std::size_t e = 0; e < 6; ++e) {
+    const double cosine = g.cosine[e] / g.areas[e];
+    shape.largest_cos = std::max(shape.largest_cos, cosine);
+    shape.smallest_cos = std::min(shape.smallest_cos, cosine);
+  }
+  const double half_volume6 = 0.5 * g.volume6;  // = 3 V
+  shape.mean_ratio = 12 * std::cbrt(half_volume6 * half_volume6) / g.edges;
   return shape;
+}
+
+/// bounds.hold(measure_shape(a, b, c, d)) without a root or a division of it.
+inline bool within(const ShapeBounds& bounds, Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
+  const TetGeometry g(a, b, c, d);
+  const double half_volume6 = 0.5 * g.volume6, mean_edge = bounds.min_mean_ratio / 12 * g.edges;
+  bool inside = g.volume6 > 0 && half_volume6 * half_volume6 >= mean_edge * mean_edge * mean_edge;
+  for (std::size_t e = 0; e < 6; ++e)
+    inside &= g.cosine[e] <= bounds.largest_cos * g.areas[e] && g.cosine[e] >= bounds.smallest_cos * g.areas[e];
+  return inside;
 }
 
 }  // namespace anatomesh

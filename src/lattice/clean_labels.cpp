@@ -1,0 +1,77 @@
+#include "lattice/clean_labels.h"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "base/parallel.h"
+#include "mesh/adjacency.h"
+
+namespace anatomesh {
+namespace {
+
+constexpr int kRounds = 3;
+constexpr std::uint64_t kMinTets = 24;
+
+// The tetrahedron behind the face of t opposite to its corner n, or t itself at the mesh's border.
+TetId behind_face(const TissueMesh& mesh, const VertexLists<TetId>& tets_of_vertex, TetId t, std::size_t n) {
+  const auto& tet = mesh.tets[t];
+  const auto has = [&](TetId other, VertexId v) {
+    return std::find(mesh.tets[other].begin(), mesh.tets[other].end(), v) != mesh.tets[other].end();
+  };
+  for (const TetId other : tets_of_vertex[tet[(n + 1) % 4]]) {
+    if (other != t && has(other, tet[(n + 2) % 4]) && has(other, tet[(n + 3) % 4])) return other;
+  }
+  return t;
+}
+
+// Tissue that t should take, its own if none.
+TissueId majority_behind_faces(const TissueMesh& mesh, const std::array<TetId, 4>& behind, TetId t) {
+  const TissueId own = mesh.tissues[t];
+  std::array<TissueId, 4> tissues;
+  for (std::size_t n = 0; n < 4; ++n) tissues[n] = mesh.tissues[behind[n]];
+  std::sort(tissues.begin(), tissues.end());
+  TissueId best = own;
+  std::ptrdiff_t most = 0;
+  for (const TissueId tissue : tissues) {
+    const auto faces = std::count(tissues.begin(), tissues.end(), tissue);
+    if (tissue != own && faces > most) best = tissue, most = faces;
+  }
+  const bool cut_off = std::count(tissues.begin(), tissues.end(), own) == 0;
+  return most >= 3 || cut_off ? best : own;
+}
+
+}  // namespace
+
+void clean_labels(TissueMesh& mesh, const std::function<bool(TetId)>& may_change) {
+  const auto tets_of_vertex = tets_of_vertices(mesh.points_mm.size(), mesh.tets);
+  std::vector<std::uint64_t> tets_of_tissue;
+  for (const TissueId tissue : mesh.tissues) {
+    if (tissue >= tets_of_tissue.size()) tets_of_tissue.resize(tissue + 1u);
+    ++tets_of_tissue[tissue];
+  }
+  for (int round = 0; round < kRounds; ++round) {
+    const auto tissues_of_vertex = tissues_of_vertices(tets_of_vertex, mesh.tissues);
+    std::vector<char> candidate(mesh.tets.size());
+    parallel_for(mesh.tets.size(), [&](std::size_t t) {
+      candidate[t] = std::all_of(mesh.tets[t].begin(), mesh.tets[t].end(),
+                                 [&](VertexId v) { return tissues_of_vertex[v].size() > 1; }) &&
+                     may_change(static_cast<TetId>(t));
+    });
+    bool changed = false;
+    for (TetId t = 0; t < mesh.tets.size(); ++t) {
+      if (!candidate[t] || tets_of_tissue[mesh.tissues[t]] <= kMinTets) continue;
+      std::array<TetId, 4> behind;
+      for (std::size_t n = 0; n < 4; ++n) behind[n] = behind_face(mesh, tets_of_vertex, t, n);
+      const TissueId tissue = majority_behind_faces(mesh, behind, t);
+      if (tissue == mesh.tissues[t]) continue;
+      --tets_of_tissue[mesh.tissues[t]];
+      ++tets_of_tissue[tissue];
+      mesh.tissues[t] = tissue;
+      changed = true;
+    }
+    if (!changed) return;
+  }
+}
+
+}  // namespace anatomesh
