@@ -51,7 +51,7 @@ double AngleGuard::advance(VertexId v, Vec3 p, int halvings) const {
   return 0;
 }
 
-double AngleGuard::slack(VertexId v, Vec3 p) const {
+double AngleGuard::slack(VertexId v, Vec3 p, double enough) const {
   double worst = 1;
   for (const TetId t : topology_.tets_of_vertex[v]) {
     const auto [a, b, c, d] = corners_with(mesh_, t, v, p);
@@ -62,6 +62,7 @@ double AngleGuard::slack(VertexId v, Vec3 p) const {
     const ShapeMeasure s = measure_shape(a, b, c, d);
     worst = std::min({worst, bounds_.largest_cos - s.largest_cos, s.smallest_cos - bounds_.smallest_cos,
                       s.mean_ratio - bounds_.min_mean_ratio});
+    if (worst < enough) return worst;
   }
   return worst;
 }
@@ -83,11 +84,10 @@ void relax_interior(TissueMesh& mesh, const MeshTopology& topology, const AngleG
     mean = (1.0 / static_cast<double>(topology.neighbours[v].size())) * mean;
     const Vec3 from = mesh.points_mm[v], edge = mesh.points_mm[topology.neighbours[v][0]] - from;
     if (norm_squared(mean - from) < kStill * kStill * norm_squared(edge)) return;
-    const double before = guard.slack(v, from);
+    const double before = std::max(0.0, guard.slack(v, from, -1));
     for (const double share : {1.0, 0.3}) {
       const Vec3 at = from + share * (mean - from);
-      const double after = guard.slack(v, at);
-      if (after < 0 || after < before) continue;
+      if (guard.slack(v, at, before) < before) continue;
       mesh.points_mm[v] = at;
       return;
     }

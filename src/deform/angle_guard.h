@@ -26,8 +26,8 @@ class AngleGuard {
   double advance(VertexId v, Vec3 p, int halvings) const;
 
   /// How far the worst tetrahedron at v is from its bounds when v is at p; negative outside of them, 1 at
-  /// the most. Cushion tetrahedra count only when they turn over.
-  double slack(VertexId v, Vec3 p) const;
+  /// the most. Cushion tetrahedra count only when they turn over. Stops at the first that is below `enough`.
+  double slack(VertexId v, Vec3 p, double enough) const;
 
  private:
   TissueMesh& mesh_;

@@ -106,7 +106,7 @@ void check_nrrd(const fs::path& path) {
   // An axis that is not one of space may have the spacing NaN; such an image is refused for its dimension.
   if (header.get("dimension", "") == "3") check_spacing(path, header.get("spacings", ""));
   const std::string encoding = header.get("encoding", "raw");
-  const bool is_detached = header.get("data file", header.get("datafile", "")) != "";
+  const bool is_detached = !header.get("data file", header.get("datafile", "")).empty();
   const bool skips = header.get("byte skip", header.get("byteskip", "0")) != "0" ||
                      header.get("line skip", header.get("lineskip", "0")) != "0";
   if ((encoding == "gzip" || encoding == "gz") && !is_detached && !skips) check_compressed(path, path, header.bytes);

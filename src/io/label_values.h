@@ -48,7 +48,7 @@ std::optional<BadLabel> store_labels(const void* values, std::size_t count, Labe
     Value value;
     std::memcpy(&value, bytes + n * sizeof(Value), sizeof(Value));
     if (!is_label(value)) return BadLabel{n, number_text(value)};
-    const auto label = static_cast<Label>(value);
+    const auto label = static_cast<Label>(value);  // NOLINT(bugprone-signed-char-misuse): it is not negative
     std::memcpy(labels + n, &label, sizeof(Label));
   }
   return std::nullopt;

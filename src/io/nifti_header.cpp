@@ -79,7 +79,7 @@ NiftiHeader parse(const HeaderBytes& bytes, bool swap) {
   h.vox_offset = fields.f32(108);
   h.scl_slope = fields.f32(112);
   h.scl_inter = fields.f32(116);
-  h.xyzt_units = fields.character(123);
+  h.xyzt_units = static_cast<unsigned char>(fields.character(123));
   h.qform_code = fields.i16(252);
   h.sform_code = fields.i16(254);
   for (std::size_t n = 0; n < 3; ++n) h.quatern[n] = fields.f32(256 + 4 * n);

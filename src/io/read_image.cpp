@@ -1,5 +1,6 @@
 #include <itkGDCMImageIO.h>
 #include <itkGDCMSeriesFileNames.h>
+#include <itkMetaDataObject.h>
 
 #include <algorithm>
 #include <cmath>
@@ -119,6 +120,14 @@ void read_header(const fs::path& path, itk::ImageIOBase& io) {
   call_itk(path, "its header cannot be read", [&] { io.ReadImageInformation(); });
 }
 
+/// A DICOM segmentation object holds a stack of masks for each tissue, which would pass for slices.
+void refuse_segmentation_object(const fs::path& path, const itk::ImageIOBase& io) {
+  std::string modality;
+  itk::ExposeMetaData<std::string>(io.GetMetaDataDictionary(), "0008|0060", modality);
+  if (modality.substr(0, 3) != "SEG") return;
+  throw InvalidInput(in_quotes(path) + " is a DICOM segmentation object; convert it to a label image, e.g. in NIfTI");
+}
+
 /// Reads all voxels of the file that io has the header of. place says where they belong.
 void read_voxels(const VoxelPlace& place, itk::ImageIOBase& io, Label* labels) {
   const NumberType type = voxel_type_of(place.path, io);
@@ -167,6 +176,7 @@ ImageFile read_single_file(const fs::path& path, const ItkSession& itk_session) 
   if (is_read_by_printing_library(path)) muted.emplace();
   const itk::ImageIOBase::Pointer io = format_of(path);
   read_header(path, *io);
+  refuse_segmentation_object(path, *io);
   const std::array<std::size_t, 3> size = size_of(path, *io);
   if (dynamic_cast<itk::GDCMImageIO*>(io.GetPointer()) != nullptr) {
     if (size[2] == 1) {
@@ -225,18 +235,18 @@ ImageFile read_dicom_series(const fs::path& folder) {
   for (const std::string& file : files) {
     slices.push_back(itk::GDCMImageIO::New().GetPointer());
     read_header(file, *slices.back());
+    refuse_segmentation_object(file, *slices.back());
     geometries.push_back(geometry_of(*slices.back()));
   }
   std::array<std::size_t, 3> size = size_of(files.front(), *slices.front());
   if (files.size() == 1 && size[2] == 1) {
     throw InvalidInput("the DICOM series in " + in_quotes(folder) + " has a single slice; a 3D image is needed");
   }
-  for (std::size_t n = 1; n < files.size(); ++n) {
+  for (std::size_t n = 0; files.size() > 1 && n < files.size(); ++n) {
     if (size_of(files[n], *slices[n]) == std::array<std::size_t, 3>{size[0], size[1], 1}) continue;
     throw InvalidInput(in_quotes(files[n]) + " is a slice of " + size_text(*slices[n]) +
-                       " where the others of its series "
-                       "are " +
-                       size_text(*slices.front()) + "; all must be alike");
+                       " in a series that begins with one of " + size_text(*slices.front()) +
+                       "; all must be alike, with one layer each");
   }
   const std::size_t slice_voxels = size[0] * size[1] * size[2];
   ImageGeometry geometry = geometries.front();

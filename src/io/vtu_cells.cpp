@@ -54,7 +54,8 @@ NumberArray numbers_of(vtkDataArray& array) {
 std::vector<std::int64_t> integers_of(vtkDataArray& array) {
   std::vector<std::int64_t> result(static_cast<std::size_t>(array.GetNumberOfValues()));
   const auto copy = [&]<typename Value>(const Value* values) {
-    for (std::size_t n = 0; n < result.size(); ++n) result[n] = static_cast<std::int64_t>(values[n]);
+    for (std::size_t n = 0; n < result.size(); ++n)
+      result[n] = static_cast<std::int64_t>(values[n]);  // NOLINT(bugprone-signed-char-misuse)
   };
   switch (array.GetDataType()) {
     vtkTemplateMacro(copy(static_cast<const VTK_TT*>(array.GetVoidPointer(0))));

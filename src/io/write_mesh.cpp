@@ -33,7 +33,7 @@ vtkSmartPointer<vtkPoints> vtk_points(const TetMesh& mesh) {
   for (const Vec3& p : mesh.points_mm) {
     for (std::size_t axis = 0; axis < 3; ++axis) *out++ = p[axis];
   }
-  const auto points = vtkSmartPointer<vtkPoints>::New();
+  auto points = vtkSmartPointer<vtkPoints>::New();
   points->SetData(coordinates);
   return points;
 }
@@ -43,21 +43,21 @@ template <typename IdArray>
 vtkSmartPointer<vtkCellArray> vtk_cells(const TetMesh& mesh) {
   using Id = typename IdArray::ValueType;
   vtkNew<IdArray> offsets, connectivity;
-  offsets->SetNumberOfValues(static_cast<vtkIdType>(mesh.tets.size() + 1));
-  connectivity->SetNumberOfValues(static_cast<vtkIdType>(4 * mesh.tets.size()));
+  offsets->SetNumberOfValues(static_cast<vtkIdType>(mesh.tets.size()) + 1);
+  connectivity->SetNumberOfValues(4 * static_cast<vtkIdType>(mesh.tets.size()));
   Id* offset = offsets->GetPointer(0);
-  for (std::size_t n = 0; n <= mesh.tets.size(); ++n) *offset++ = static_cast<Id>(4 * n);
+  for (std::size_t n = 0; n <= mesh.tets.size(); ++n) *offset++ = 4 * static_cast<Id>(n);
   Id* corner = connectivity->GetPointer(0);
   for (const auto& tet : mesh.tets) {
     for (const VertexId vertex : tet) *corner++ = static_cast<Id>(vertex);
   }
-  const auto cells = vtkSmartPointer<vtkCellArray>::New();
+  auto cells = vtkSmartPointer<vtkCellArray>::New();
   cells->SetData(offsets, connectivity);
   return cells;
 }
 
 vtkSmartPointer<vtkUnstructuredGrid> vtk_grid(const TetMesh& mesh) {
-  const auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
   grid->SetPoints(vtk_points(mesh));
   constexpr std::size_t kMost32 = std::numeric_limits<vtkTypeInt32>::max();
   const bool fits_32 = 4 * mesh.tets.size() <= kMost32 && mesh.points_mm.size() <= kMost32;
@@ -116,6 +116,7 @@ const MeshFormat& format_for(const std::filesystem::path& path) {
 
 std::vector<std::string> mesh_extensions() {
   std::vector<std::string> extensions;
+  extensions.reserve(kMeshFormats.size());
   for (const MeshFormat& format : kMeshFormats) extensions.emplace_back(format.extension);
   return extensions;
 }

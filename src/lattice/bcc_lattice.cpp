@@ -1,6 +1,5 @@
 #include "lattice/bcc_lattice.h"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -127,8 +126,12 @@ LatticePoint bcc_locate(Vec3 x) {
   // The tetrahedron lies around the edge from this cube's centre through its nearest face (axis r), on the side
   // of the nearest of that face's edges (axis p).
   std::array<std::size_t, 3> axis = {0, 1, 2};
-  std::stable_sort(axis.begin(), axis.end(),
-                   [&](std::size_t a, std::size_t b) { return std::abs(d[a]) > std::abs(d[b]); });
+  const auto order = [&](std::size_t first, std::size_t second) {
+    if (std::abs(d[axis[second]]) > std::abs(d[axis[first]])) std::swap(axis[first], axis[second]);
+  };
+  order(0, 1);
+  order(1, 2);
+  order(0, 1);
   LatticePoint b = centre;
   b[axis[0]] += d[axis[0]] < 0 ? -2 : 2;
   b[axis[1]] += d[axis[1]] < 0 ? -1 : 1;
