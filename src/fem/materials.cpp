@@ -2,7 +2,7 @@
 // methods and authors; the registration needs no more than their order. A wide collection is A. Granados et al., "A
 // generative model of hyperelastic strain energy density functions for multiple tissue brain deformation",
 // International Journal of Computer Assisted Radiology and Surgery 16, 2021.
-#include "fem/materials.h"
+#include "anatomesh/materials.h"
 
 namespace anatomesh {
 

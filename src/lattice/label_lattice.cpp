@@ -28,7 +28,7 @@ Placement place_lattice(const TissueImage& image, const LatticePlan& plan) {
     const double voxels = image.size[a] - 2 * TissueImage::kBorder;
     const double extent = voxels * image.spacing_mm[a];
     const double cells = std::ceil(extent / plan.bcc_size_mm) + 2;
-    if (cells * 4 * std::ldexp(1.0, plan.levels + plan.extra_levels) > LatticePointMap::kMaxCoordinate) {
+    if (cells * 4 * std::ldexp(1.0, plan.levels) > LatticePointMap::kMaxCoordinate) {
       throw InvalidInput("a lattice of " + std::to_string(plan.bcc_size_mm) + " mm over " + std::to_string(extent) +
                          " mm of image is too large; take a larger bcc_size");
     }
@@ -37,6 +37,14 @@ Placement place_lattice(const TissueImage& image, const LatticePlan& plan) {
     place.origin_mm[a] = low + 0.5 * extent - 0.5 * cells * plan.bcc_size_mm;
   }
   return place;
+}
+
+// As many of the extra levels as the lattice's coordinates allow.
+int deepest_level(const Placement& place, const LatticePlan& plan) {
+  const double widest = *std::max_element(place.cells.begin(), place.cells.end());
+  int level = plan.levels + plan.extra_levels;
+  while (level > plan.levels && widest * 4 * std::ldexp(1.0, level) > LatticePointMap::kMaxCoordinate) --level;
+  return level;
 }
 
 // A leaf and the votes of its parts: one, or those of its green split.
@@ -52,7 +60,7 @@ class LabelLattice {
         plan_(plan),
         target_(plan.fidelity),
         place_(place_lattice(image, plan)),
-        lattice_(place_.cells, plan.levels + plan.extra_levels),
+        lattice_(place_.cells, deepest_level(place_, plan)),
         votes_(image, lattice_, place_.origin_mm, place_.unit_mm) {}
 
   /// Returns whether anything was refined.

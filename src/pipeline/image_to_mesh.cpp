@@ -36,6 +36,10 @@ LatticePlan make_plan(const TissueImage& image, const LatticeOptions& options) {
   LatticePlan plan;
   plan.bcc_size_mm = options.bcc_size_mm;
   plan.levels = std::max(0, static_cast<int>(std::floor(std::log2(options.bcc_size_mm / options.min_size_mm) + 1e-9)));
+  // Deep enough for a tissue of one voxel: tetrahedra a quarter as wide as the thinnest side of it.
+  const double thinnest = std::min({image.spacing_mm.x, image.spacing_mm.y, image.spacing_mm.z});
+  const double smallest = std::ldexp(options.bcc_size_mm, -plan.levels);
+  plan.extra_levels = std::clamp(static_cast<int>(std::ceil(std::log2(4 * smallest / thinnest))), 0, 8);
   plan.fidelity.assign(image.labels.size(), options.fidelity);
   for (const auto& [label, fidelity] : options.fidelity_label) {
     const auto at = std::lower_bound(image.labels.begin(), image.labels.end(), label);

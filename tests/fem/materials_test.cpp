@@ -1,4 +1,4 @@
-#include "fem/materials.h"
+#include "anatomesh/materials.h"
 
 #include <gtest/gtest.h>
 
