@@ -19,14 +19,6 @@ std::array<Vec3, 4> corners_with(const TissueMesh& mesh, TetId t, VertexId moved
   return corners;
 }
 
-template <class Visit>
-void for_each_vertex_by_colour(const MeshTopology& topology, const Visit& visit) {
-  for (const auto& colour : topology.colours) {
-    parallel_for(
-        colour.size(), [&](std::size_t i) { visit(colour[i]); }, 256);
-  }
-}
-
 }  // namespace
 
 bool AngleGuard::fits(VertexId v, Vec3 p) const {
@@ -67,17 +59,26 @@ double AngleGuard::slack(VertexId v, Vec3 p, double enough) const {
   return worst;
 }
 
+void for_each_vertex_by_colour(const MeshTopology& topology, const Stage& stage,
+                               const std::function<void(VertexId)>& visit) {
+  for (const auto& colour : topology.colours) {
+    stage.check_cancelled();
+    parallel_for(
+        colour.size(), [&](std::size_t i) { visit(colour[i]); }, 256);
+  }
+}
+
 void advance_all(TissueMesh& mesh, const MeshTopology& topology, const AngleGuard& guard, std::span<const Vec3> goals,
-                 int sweeps) {
+                 int sweeps, const Stage& stage) {
   for (int sweep = 0; sweep < sweeps; ++sweep) {
-    for_each_vertex_by_colour(topology, [&](VertexId v) {
+    for_each_vertex_by_colour(topology, stage, [&](VertexId v) {
       if (goals[v] != mesh.points_mm[v]) guard.advance(v, goals[v], 3);
     });
   }
 }
 
-void relax_interior(TissueMesh& mesh, const MeshTopology& topology, const AngleGuard& guard) {
-  for_each_vertex_by_colour(topology, [&](VertexId v) {
+void relax_interior(TissueMesh& mesh, const MeshTopology& topology, const AngleGuard& guard, const Stage& stage) {
+  for_each_vertex_by_colour(topology, stage, [&](VertexId v) {
     if (topology.on_interface(v) || topology.outside(v)) return;
     Vec3 mean;
     for (const VertexId w : topology.neighbours[v]) mean += mesh.points_mm[w];

@@ -2,9 +2,11 @@
 // inside them, they hold at every moment and so for the final mesh.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
+#include "base/stage.h"
 #include "mesh/adjacency.h"
 #include "mesh/tet_shape.h"
 #include "mesh/tissue_mesh.h"
@@ -35,13 +37,18 @@ class AngleGuard {
   ShapeBounds bounds_;
 };
 
+/// Calls visit(v) for every vertex, for those of one colour of the vertex graph in parallel: visit may move v and read
+/// its neighbours. Throws Cancelled between two colours.
+void for_each_vertex_by_colour(const MeshTopology& topology, const Stage& stage,
+                               const std::function<void(VertexId)>& visit);
+
 /// Moves all vertices towards their goals, those of one colour of the vertex graph in parallel, up to `sweeps` times.
 /// Vertices without a goal keep goal == position. The result does not depend on the number of threads.
 void advance_all(TissueMesh& mesh, const MeshTopology& topology, const AngleGuard& guard, std::span<const Vec3> goals,
-                 int sweeps);
+                 int sweeps, const Stage& stage);
 
 /// Moves the vertices inside the tissues towards the mean of their neighbours where that does not make the worst of
 /// their tetrahedra worse: makes room for the interfaces.
-void relax_interior(TissueMesh& mesh, const MeshTopology& topology, const AngleGuard& guard);
+void relax_interior(TissueMesh& mesh, const MeshTopology& topology, const AngleGuard& guard, const Stage& stage);
 
 }  // namespace anatomesh

@@ -72,13 +72,13 @@ void register_mesh(TissueMesh& mesh, const MeshTopology& topology, const AngleGu
       wanted[v] = match.target_mm - mesh.points_mm[v];
     }
     std::fill(u.begin(), u.end(), Vec3{});
-    SolverOptions solver{kTolerance, kMaxSolverIterations, {}, {}};
+    const SolverOptions solver{kTolerance, kMaxSolverIterations, {}, stage.cancel_token()};
     solve_regularized(stiffness, weight, wanted, u, solver);
     stage.check_cancelled();
     goals = mesh.points_mm;
     for (std::size_t v = 0; v < part.vertices; ++v) goals[v] += u[v];
-    advance_all(mesh, topology, guard, goals, kGuardSweeps);
-    relax_interior(mesh, topology, guard);
+    advance_all(mesh, topology, guard, goals, kGuardSweeps, stage);
+    relax_interior(mesh, topology, guard, stage);
     stage.at(static_cast<double>(iteration + 1) / iterations);
   }
 }

@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "base/parallel.h"
-
 namespace anatomesh {
 namespace {
 
@@ -62,22 +60,15 @@ Vec3 boundary_step(const LabelField& field, Vec3 p, std::span<const TissueId> ti
 void settle(TissueMesh& mesh, const MeshTopology& topology, const AngleGuard& guard, const LabelField& field,
             int sweeps, const Stage& stage) {
   for (int sweep = 0; sweep < sweeps; ++sweep) {
-    for (const auto& colour : topology.colours) {
-      stage.check_cancelled();
-      parallel_for(
-          colour.size(),
-          [&](std::size_t i) {
-            const VertexId v = colour[i];
-            if (!topology.on_interface(v)) return;
-            const auto tissues = topology.tissues_of_vertex[v];
-            const Vec3 from = mesh.points_mm[v];
-            const Vec3 relaxed = from + 0.5 * (mean_of_interface_neighbours(mesh, topology, v) - from);
-            const Vec3 goal = relaxed + boundary_step(field, relaxed, tissues);
-            if (guard.advance(v, goal, 2) == 0) guard.advance(v, from + boundary_step(field, from, tissues), 3);
-          },
-          128);
-    }
-    relax_interior(mesh, topology, guard);
+    for_each_vertex_by_colour(topology, stage, [&](VertexId v) {
+      if (!topology.on_interface(v)) return;
+      const auto tissues = topology.tissues_of_vertex[v];
+      const Vec3 from = mesh.points_mm[v];
+      const Vec3 relaxed = from + 0.5 * (mean_of_interface_neighbours(mesh, topology, v) - from);
+      const Vec3 goal = relaxed + boundary_step(field, relaxed, tissues);
+      if (guard.advance(v, goal, 2) == 0) guard.advance(v, from + boundary_step(field, from, tissues), 3);
+    });
+    relax_interior(mesh, topology, guard, stage);
     stage.at(static_cast<double>(sweep + 1) / sweeps);
   }
 }
