@@ -178,9 +178,10 @@ bool LabelLattice::refine_until_faithful(const Stage& stage) {
 
 // What the removal of label noise took from a tissue is asked for on top.
 void LabelLattice::raise_targets(const std::vector<LatticeFidelity>& reached) {
+  constexpr double kMargin = 0.01;
   for (std::size_t t = 1; t < target_.size(); ++t) {
     const double lacking = plan_.fidelity[t] - std::min(reached[t].f1(), reached[t].f2());
-    if (lacking > 0) target_[t] = std::min(1.0, target_[t] + lacking);
+    if (lacking > 0) target_[t] = std::min(1.0, target_[t] + lacking + kMargin);
   }
 }
 
