@@ -1,0 +1,191 @@
+#include "apps/mesh_options.h"
+
+#include <fmt/core.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <regex>
+#include <type_traits>
+#include <utility>
+
+#include "anatomesh/errors.h"
+
+namespace anatomesh::apps {
+namespace {
+
+/// Members of Options as the library's messages name them.
+constexpr std::array<std::pair<const char*, const char*>, 14> kOptionNames = {{
+    {"default_material young_modulus_pa", "--young"},
+    {"default_material poisson_ratio", "--poisson"},
+    {"bcc_size_mm", "--bcc-size"},
+    {"min_size_mm", "--min-size"},
+    {"fidelity_label", "--fidelity-label"},
+    {"non_connectivity", "--non-connectivity"},
+    {"min_dihedral_deg", "--min-dihedral"},
+    {"max_dihedral_deg", "--max-dihedral"},
+    {"min_mean_ratio", "--min-mean-ratio"},
+    {"young_modulus_pa", "--young"},
+    {"poisson_ratio", "--poisson"},
+    {"max_memory_gib", "--max-memory"},
+    {"bcc_size", "--bcc-size"},
+    {"min_size", "--min-size"},
+}};
+
+/// A finite real or a whole number. Throws InvalidOption.
+template <class Number>
+Number parse_number(std::string_view text) {
+  Number value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool whole_text = error == std::errc() && end == text.data() + text.size();
+  if constexpr (std::is_integral_v<Number>) {
+    if (!whole_text) throw InvalidOption(fmt::format("'{}' is not a whole number", text));
+  } else {
+    if (!whole_text || !std::isfinite(value)) throw InvalidOption(fmt::format("'{}' is not a finite number", text));
+  }
+  return value;
+}
+
+/// "LABEL=VALUE"; without a label the value is meant for all others.
+std::pair<std::optional<Label>, double> parse_labelled_number(std::string_view text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string_view::npos) return {std::nullopt, parse_number<double>(text)};
+  return {parse_label(text.substr(0, equals)), parse_number<double>(text.substr(equals + 1))};
+}
+
+/// An option whose text is handed to `take`; what is wrong with it is told with the option's name.
+CLI::Option* add_parsed(CLI::App& command, const std::string& name, const std::string& value_name,
+                        const std::string& help, const std::function<void(const std::string&)>& take) {
+  const auto parse = [name, take](const std::string& text) {
+    try {
+      take(text);
+    } catch (const InvalidOption& error) {
+      throw CLI::ValidationError(name, error.what());
+    }
+  };
+  return command.add_option_function<std::string>(name, parse, help)->type_name(value_name);
+}
+
+template <class Number>
+void add_number(CLI::App& command, const std::string& name, const std::string& value_name, const std::string& help,
+                Number& target) {
+  add_parsed(command, name, value_name, help, [&](const std::string& text) { target = parse_number<Number>(text); });
+}
+
+/// An option that may be given several times, once a label.
+void add_labelled(CLI::App& command, const std::string& name, const std::string& value_name, const std::string& help,
+                  const std::function<void(std::optional<Label>, double)>& take) {
+  const auto take_text = [take](const std::string& text) { std::apply(take, parse_labelled_number(text)); };
+  add_parsed(command, name, value_name, help, take_text)->trigger_on_parse();
+}
+
+template <class Enum>
+void add_choice(CLI::App& command, const std::string& name, const std::string& help,
+                const std::vector<std::pair<std::string, Enum>>& choices, Enum& target) {
+  std::string names;
+  for (const auto& choice : choices) names += (names.empty() ? "" : "|") + choice.first;
+  add_parsed(command, name, names, help, [&target, choices, names](const std::string& text) {
+    for (const auto& [word, value] : choices)
+      if (text == word) {
+        target = value;
+        return;
+      }
+    throw InvalidOption(fmt::format("'{}' is not one of {}", text, names));
+  });
+}
+
+void add_lattice_options(CLI::App& command, LatticeOptions& lattice) {
+  add_number(command, "--bcc-size", "MM", "spacing of the coarsest lattice [8 times the mean voxel spacing]",
+             lattice.bcc_size_mm);
+  add_number(command, "--min-size", "MM",
+             "smallest lattice spacing that fidelity may ask for [a quarter of --bcc-size]", lattice.min_size_mm);
+  add_number(command, "--fidelity", "F", "fidelity that each tissue is refined for, 0 < F <= 1 [0.95]",
+             lattice.fidelity);
+  add_labelled(command, "--fidelity-label", "LABEL=F", "fidelity of one tissue; may be repeated",
+               [&lattice](std::optional<Label> label, double value) {
+                 if (!label) throw InvalidOption("write it as LABEL=F, e.g. 3=0.99");
+                 lattice.fidelity_label[*label] = value;
+               });
+}
+
+void add_material_option(CLI::App& command, const std::string& name, const std::string& value_name,
+                         const std::string& help, std::map<Label, double>& of_tissue, double& of_others) {
+  add_labelled(command, name, value_name, help,
+               [&](std::optional<Label> label, double value) { (label ? of_tissue[*label] : of_others) = value; });
+}
+
+void add_deform_options(CLI::App& command, DeformOptions& deform) {
+  add_choice<NonConnectivity>(command, "--non-connectivity", "thinning of the boundary's edge points [face]",
+                              {{"vertex", NonConnectivity::vertex},
+                               {"edge", NonConnectivity::edge},
+                               {"face", NonConnectivity::face},
+                               {"none", NonConnectivity::none}},
+                              deform.non_connectivity);
+  add_number(command, "--iterations", "N", "deformation iterations; 0 keeps the lattice [10]", deform.iterations);
+  add_bound_options(command, deform.min_dihedral_deg, deform.max_dihedral_deg, deform.min_mean_ratio);
+}
+
+void add_material_options(CLI::App& command, MeshRequest& request) {
+  Material& others = request.options.deform.default_material;
+  add_material_option(command, "--young", "[LABEL=]PA", "Young's modulus of a tissue, or of all others [3000]",
+                      request.young_modulus_pa, others.young_modulus_pa);
+  add_material_option(command, "--poisson", "[LABEL=]NU", "Poisson ratio of a tissue, or of all others [0.45]",
+                      request.poisson_ratio, others.poisson_ratio);
+}
+
+}  // namespace
+
+void add_mesh_options(CLI::App& command, MeshRequest& request) {
+  add_lattice_options(command, request.options.lattice);
+  add_deform_options(command, request.options.deform);
+  add_material_options(command, request);
+  add_labels_option(command, request.ranges);
+  add_frame_option(command, request.options.frame);
+  add_number(command, "--threads", "N", "threads; 0 takes all cores [0]", request.options.threads);
+  add_number(command, "--max-memory", "GIB", "refuse to start above this; 0 takes the memory that is free [0]",
+             request.options.max_memory_gib);
+}
+
+void add_bound_options(CLI::App& command, double& min_dihedral_deg, double& max_dihedral_deg, double& min_mean_ratio) {
+  add_number(command, "--min-dihedral", "DEG", "smallest dihedral angle, 0 to 30 [15]", min_dihedral_deg);
+  add_number(command, "--max-dihedral", "DEG", "largest dihedral angle, 117 to 180 [155]", max_dihedral_deg);
+  add_number(command, "--min-mean-ratio", "R", "smallest mean ratio of a tetrahedron, 0 to 0.5 [0.3]", min_mean_ratio);
+}
+
+void add_frame_option(CLI::App& command, Frame& frame) {
+  add_choice<Frame>(command, "--frame", "space of the mesh [lps]", {{"lps", Frame::lps}, {"ras", Frame::ras}}, frame);
+}
+
+CLI::Option& add_labels_option(CLI::App& command, std::vector<LabelRange>& ranges) {
+  return *add_parsed(command, "--labels", "LIST", "these labels only, e.g. 1,2,5-9; the rest is background [all]",
+                     [&](const std::string& text) { ranges = parse_label_list(text); });
+}
+
+Options options_of(const MeshRequest& request) {
+  Options options = request.options;
+  DeformOptions& deform = options.deform;
+  const auto material_of = [&](Label label) -> Material& {
+    return deform.material.try_emplace(label, deform.default_material).first->second;
+  };
+  for (const auto& [label, young] : request.young_modulus_pa) material_of(label).young_modulus_pa = young;
+  for (const auto& [label, poisson] : request.poisson_ratio) material_of(label).poisson_ratio = poisson;
+  return options;
+}
+
+void resolve_labels(Options& options, const std::vector<LabelRange>& ranges, const LabelCounts& present) {
+  for (const auto& [label, fidelity] : options.lattice.fidelity_label)
+    require_label(label, present, "--fidelity-label");
+  for (const auto& [label, material] : options.deform.material) require_label(label, present, "--young or --poisson");
+  options.labels = select_labels(ranges, present);
+}
+
+std::string with_option_names(std::string_view message) {
+  std::string text(message);
+  for (const auto& [member, option] : kOptionNames)
+    text = std::regex_replace(text, std::regex(fmt::format("\\b{}\\b", member)), option);
+  return text;
+}
+
+}  // namespace anatomesh::apps

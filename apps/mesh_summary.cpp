@@ -1,0 +1,69 @@
+#include "apps/mesh_summary.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <string_view>
+
+#include "apps/text_table.h"
+
+namespace anatomesh::apps {
+namespace {
+
+std::string shell_quoted(const std::filesystem::path& path) {
+  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./+,:=@";
+  const std::string text = path.string();
+  if (!text.empty() && text.find_first_not_of(kPlain) == std::string::npos) return text;
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+/// "0.912 (label 23)": the tissue of the mesh whose lattice value is worst.
+std::string worst_lattice(const std::vector<TissueOutcome>& tissues, double TissueOutcome::*value) {
+  const auto worst = std::min_element(tissues.begin(), tissues.end(),
+                                      [&](const auto& a, const auto& b) { return a.*value < b.*value; });
+  return worst == tissues.end() ? "-" : fmt::format("{} (label {})", fixed((*worst).*value, 3), worst->label);
+}
+
+}  // namespace
+
+std::string mesh_table(const MeshSummary& summary) {
+  const Result& result = *summary.result;
+  const Quality& quality = *summary.quality;
+  const auto meshed =
+      std::count_if(result.tissues.begin(), result.tissues.end(), [](const auto& t) { return t.tets > 0; });
+  double total_s = 0;
+  std::string stages;
+  for (const auto& [stage, seconds] : summary.times) {
+    total_s += seconds;
+    stages += fmt::format("{}{} {:.1f}", stages.empty() ? "" : ", ", stage, seconds);
+  }
+  const LatticeOptions& lattice = result.options.lattice;
+  std::string text;
+  text += field("mesh", fmt::format("{}, {}, {} frame in mm", summary.mesh_file.string(), byte_size(summary.mesh_bytes),
+                                    result.options.frame == Frame::lps ? "LPS" : "RAS"));
+  text += field("tetrahedra", grouped(result.mesh.tets.size()));
+  text += field("vertices", grouped(result.mesh.points_mm.size()));
+  text += field("dihedral angles", fmt::format("{} to {} degrees", fixed(quality.min_dihedral_deg, 2),
+                                               fixed(quality.max_dihedral_deg, 2)));
+  text += field("mean ratio", fmt::format("{} smallest, {} mean", fixed(quality.min_mean_ratio, 3),
+                                          fixed(quality.mean_mean_ratio, 3)));
+  text += field("labels", fmt::format("{} of {} meshed", meshed, result.tissues.size()));
+  text += field("lattice",
+                fmt::format("{:.4g} mm, refined to at least {:.4g} mm", lattice.bcc_size_mm, lattice.min_size_mm));
+  text +=
+      field("lattice F1, F2", fmt::format("worst {} and {}", worst_lattice(result.tissues, &TissueOutcome::lattice_f1),
+                                          worst_lattice(result.tissues, &TissueOutcome::lattice_f2)));
+  text += field("seconds", stages);
+  text +=
+      field("in all",
+            fmt::format("{:.1f} s, {} tetrahedra a second", total_s,
+                        grouped(static_cast<std::uint64_t>(static_cast<double>(result.mesh.tets.size()) / total_s))));
+  const char* frame = result.options.frame == Frame::lps ? "" : " --frame ras";
+  text += field("next", fmt::format("anatomesh check {} --image {}{}", shell_quoted(summary.mesh_file),
+                                    shell_quoted(summary.image_file), frame));
+  return text;
+}
+
+}  // namespace anatomesh::apps

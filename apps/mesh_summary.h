@@ -1,0 +1,27 @@
+// The table at the end of `mesh`.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "anatomesh/assess.h"
+#include "anatomesh/image_to_mesh.h"
+
+namespace anatomesh::apps {
+
+/// What `mesh` has to show for a run.
+struct MeshSummary {
+  std::filesystem::path image_file;
+  std::filesystem::path mesh_file;
+  std::uint64_t mesh_bytes = 0;
+  const Result* result = nullptr;
+  const Quality* quality = nullptr;
+  std::vector<StageTime> times;  ///< of reading, meshing, measuring and writing
+};
+
+/// The dozen lines at the end of `mesh`.
+std::string mesh_table(const MeshSummary& summary);
+
+}  // namespace anatomesh::apps

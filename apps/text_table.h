@@ -1,0 +1,26 @@
+// Numbers and columns as text.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace anatomesh::apps {
+
+/// "1,234,567".
+std::string grouped(std::uint64_t number);
+
+/// With that many decimals; "-" for a value that was not measured (NaN).
+std::string fixed(double number, int decimals);
+
+/// "12.3 MB".
+std::string byte_size(std::uint64_t bytes);
+
+/// "name      value", the values below one another in all lines of a block.
+std::string field(std::string_view name, std::string_view value);
+
+/// Rows of cells below a row of titles, right-aligned columns; every row has as many cells as there are titles.
+std::string columns(const std::vector<std::string>& titles, const std::vector<std::vector<std::string>>& rows);
+
+}  // namespace anatomesh::apps
