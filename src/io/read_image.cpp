@@ -1,12 +1,15 @@
 #include <itkGDCMImageIO.h>
-#include <itkGDCMSeriesFileNames.h>
 #include <itkMetaDataObject.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <fstream>
+#include <map>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "anatomesh/errors.h"
@@ -193,33 +196,73 @@ ImageFile read_single_file(const fs::path& path, const ItkSession& itk_session) 
   return file;
 }
 
-/// The files of the only series in a folder, in the order of their positions.
-std::vector<std::string> series_files(const fs::path& folder) {
-  const auto names = itk::GDCMSeriesFileNames::New();
-  names->SetUseSeriesDetails(false);
-  names->SetInputDirectory(folder.string());
-  const std::vector<std::string> series = names->GetSeriesUIDs();
-  if (series.size() == 1) return names->GetFileNames(series.front());
-  if (series.empty()) throw InvalidInput("the folder " + in_quotes(folder) + " holds no DICOM series");
-  std::string list;
-  for (const std::string& uid : series) {
-    list += "\n  " + uid + " (" + number_text(names->GetFileNames(uid).size()) + " files)";
+/// One file of a DICOM series.
+struct Slice {
+  std::string file;
+  itk::ImageIOBase::Pointer io;
+  ImageGeometry geometry;
+};
+
+/// Whether a file begins as DICOM files do. GDCM aborts on some files that do not.
+bool has_dicom_preamble(const fs::path& path) {
+  constexpr std::streamoff kPreamble = 128;
+  std::array<char, 4> magic{};
+  std::ifstream stream(path, std::ios::binary);
+  stream.seekg(kPreamble);
+  stream.read(magic.data(), magic.size());
+  return stream.gcount() == 4 && std::string_view(magic.data(), magic.size()) == "DICM";
+}
+
+/// The DICOM images in a folder by the series that they belong to. Files of other kinds are passed over.
+std::map<std::string, std::vector<Slice>> slices_by_series(const fs::path& folder) {
+  std::map<std::string, std::vector<Slice>> series;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const fs::path& file = entry.path();
+    if (!entry.is_regular_file() || file.filename() == "DICOMDIR" || !has_dicom_preamble(file)) continue;
+    Slice slice{file.string(), itk::GDCMImageIO::New().GetPointer(), {}};
+    const MutedStderr muted;  // GDCM prints what it thinks of broken files
+    read_header(file, *slice.io);
+    refuse_segmentation_object(file, *slice.io);
+    slice.geometry = geometry_of(*slice.io);
+    std::string uid;
+    itk::ExposeMetaData<std::string>(slice.io->GetMetaDataDictionary(), "0020|000e", uid);
+    series[uid.c_str()].push_back(std::move(slice));  // c_str: DICOM pads with a zero byte
   }
-  throw InvalidInput("the folder " + in_quotes(folder) + " holds " + number_text(series.size()) +
-                     " DICOM series; leave one of them in a folder of its own:" + list);
+  return series;
+}
+
+/// The slices of the only series in a folder, in the order of their positions.
+std::vector<Slice> only_series(const fs::path& folder) {
+  auto series = slices_by_series(folder);
+  if (series.empty()) throw InvalidInput("the folder " + in_quotes(folder) + " holds no DICOM series");
+  if (series.size() > 1) {
+    std::string list;
+    for (const auto& [uid, slices] : series) list += "\n  " + uid + " (" + number_text(slices.size()) + " files)";
+    throw InvalidInput("the folder " + in_quotes(folder) + " holds " + number_text(series.size()) +
+                       " DICOM series; leave one of them in a folder of its own:" + list);
+  }
+  std::vector<Slice>& slices = series.begin()->second;
+  const Mat3& d = slices.front().geometry.direction;
+  const Vec3 normal = cross({d[0][0], d[1][0], d[2][0]}, {d[0][1], d[1][1], d[2][1]});
+  std::sort(slices.begin(), slices.end(), [&](const Slice& one, const Slice& other) {
+    const double position = dot(normal, one.geometry.origin_mm), next = dot(normal, other.geometry.origin_mm);
+    return position != next ? position < next : one.file < other.file;
+  });
+  return std::move(slices);
 }
 
 /// The geometry of a stack of slices from those of its single slices, which must be equally spaced.
-ImageGeometry stack_geometry(const fs::path& folder, const std::vector<ImageGeometry>& slices) {
-  ImageGeometry stack = slices.front();
+ImageGeometry stack_geometry(const fs::path& folder, const std::vector<Slice>& slices) {
+  ImageGeometry stack = slices.front().geometry;
+  if (slices.size() == 1) return stack;
   const double last = static_cast<double>(slices.size() - 1);
-  const Vec3 step = (1 / last) * (slices.back().origin_mm - stack.origin_mm);
+  const Vec3 step = (1 / last) * (slices.back().geometry.origin_mm - stack.origin_mm);
   stack.spacing_mm.z = norm(step);
   for (std::size_t row = 0; row < 3; ++row) stack.direction[row][2] = step[row] / stack.spacing_mm.z;
   constexpr double kUnevenness = 0.01;  // of the spacing; scanners round positions to some digits
   for (std::size_t n = 0; n < slices.size(); ++n) {
     const Vec3 expected = stack.origin_mm + static_cast<double>(n) * step;
-    const double off = norm(slices[n].origin_mm - expected);
+    const double off = norm(slices[n].geometry.origin_mm - expected);
     if (off <= kUnevenness * stack.spacing_mm.z) continue;
     throw InvalidInput("slice " + number_text(n + 1) + " of the DICOM series in " + in_quotes(folder) + " is " +
                        number_text(off) + " mm off an even spacing of " + number_text(stack.spacing_mm.z) +
@@ -228,37 +271,32 @@ ImageGeometry stack_geometry(const fs::path& folder, const std::vector<ImageGeom
   return stack;
 }
 
-ImageFile read_dicom_series(const fs::path& folder) {
-  const std::vector<std::string> files = series_files(folder);
-  std::vector<itk::ImageIOBase::Pointer> slices;
-  std::vector<ImageGeometry> geometries;
-  for (const std::string& file : files) {
-    slices.push_back(itk::GDCMImageIO::New().GetPointer());
-    read_header(file, *slices.back());
-    refuse_segmentation_object(file, *slices.back());
-    geometries.push_back(geometry_of(*slices.back()));
-  }
-  std::array<std::size_t, 3> size = size_of(files.front(), *slices.front());
-  if (files.size() == 1 && size[2] == 1) {
+/// Voxels of the whole stack. Throws unless all slices are of one layer of the same size.
+std::array<std::size_t, 3> stack_size(const fs::path& folder, const std::vector<Slice>& slices) {
+  std::array<std::size_t, 3> size = size_of(slices.front().file, *slices.front().io);
+  if (slices.size() == 1) {
+    if (size[2] > 1) return size;
     throw InvalidInput("the DICOM series in " + in_quotes(folder) + " has a single slice; a 3D image is needed");
   }
-  for (std::size_t n = 0; files.size() > 1 && n < files.size(); ++n) {
-    if (size_of(files[n], *slices[n]) == std::array<std::size_t, 3>{size[0], size[1], 1}) continue;
-    throw InvalidInput(in_quotes(files[n]) + " is a slice of " + size_text(*slices[n]) +
-                       " in a series that begins with one of " + size_text(*slices.front()) +
+  for (const Slice& slice : slices) {
+    if (size_of(slice.file, *slice.io) == std::array<std::size_t, 3>{size[0], size[1], 1}) continue;
+    throw InvalidInput(in_quotes(slice.file) + " is a slice of " + size_text(*slice.io) +
+                       " in a series that begins with one of " + size_text(*slices.front().io) +
                        "; all must be alike, with one layer each");
   }
-  const std::size_t slice_voxels = size[0] * size[1] * size[2];
-  ImageGeometry geometry = geometries.front();
-  if (files.size() > 1) {
-    geometry = stack_geometry(folder, geometries);
-    size[2] = files.size();
-  }
+  size[2] = slices.size();
+  return size;
+}
+
+ImageFile read_dicom_series(const fs::path& folder) {
+  const std::vector<Slice> slices = only_series(folder);
+  const std::array<std::size_t, 3> size = stack_size(folder, slices);
+  const std::size_t slice_voxels = size[0] * size[1] * size[2] / slices.size();
   ImageFile file;
-  file.image = blank_image(folder, size, geometry, 0);  // the slices come one by one
-  for (std::size_t n = 0; n < files.size(); ++n) {
-    check_dicom_pixels(files[n], slice_voxels);
-    read_voxels({files[n], size, n * slice_voxels}, *slices[n], file.image.voxels.data() + n * slice_voxels);
+  file.image = blank_image(folder, size, stack_geometry(folder, slices), 0);  // the slices come one by one
+  for (std::size_t n = 0; n < slices.size(); ++n) {
+    check_dicom_pixels(slices[n].file, slice_voxels);
+    read_voxels({slices[n].file, size, n * slice_voxels}, *slices[n].io, file.image.voxels.data() + n * slice_voxels);
   }
   return file;
 }

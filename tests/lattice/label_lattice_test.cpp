@@ -54,26 +54,32 @@ void for_each_lattice(const Check& check) {
   }
 }
 
+/// Calls visit(offset, depth) for the voxels around a tetrahedron; depth > 0 inside.
+template <class Visit>
+void for_each_voxel_near(const TissueImage& image, const Corners& corners, const Visit& visit) {
+  std::array<int, 3> low{}, high{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto [least, most] = std::minmax({corners[0][a], corners[1][a], corners[2][a], corners[3][a]});
+    const auto index = [&](double x) { return x / image.spacing_mm[a] - static_cast<double>(image.first[a]); };
+    low[a] = std::max(0, static_cast<int>(std::ceil(index(least) - 1e-6)));
+    high[a] = std::min(image.size[a] - 1, static_cast<int>(std::floor(index(most) + 1e-6)));
+  }
+  for (int k = low[2]; k <= high[2]; ++k) {
+    for (int j = low[1]; j <= high[1]; ++j) {
+      for (int i = low[0]; i <= high[0]; ++i)
+        visit(image.offset(i, j, k), testing::depth_inside(corners, image.centre_mm(i, j, k)));
+    }
+  }
+}
+
 /// Which tissues the tetrahedra have that a voxel centre lies in or on. Outside the mesh is background.
 std::vector<std::set<TissueId>> tissues_at_voxels(const TissueImage& image, const TissueMesh& mesh) {
   std::vector<std::set<TissueId>> found(image.voxels.size());
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
     const Corners corners = testing::corners_of(mesh.points_mm, mesh.tets[t]);
-    std::array<int, 3> low{}, high{};
-    for (std::size_t a = 0; a < 3; ++a) {
-      const auto [least, most] = std::minmax({corners[0][a], corners[1][a], corners[2][a], corners[3][a]});
-      const auto index = [&](double x) { return x / image.spacing_mm[a] - static_cast<double>(image.first[a]); };
-      low[a] = std::max(0, static_cast<int>(std::ceil(index(least) - 1e-6)));
-      high[a] = std::min(image.size[a] - 1, static_cast<int>(std::floor(index(most) + 1e-6)));
-    }
-    for (int k = low[2]; k <= high[2]; ++k) {
-      for (int j = low[1]; j <= high[1]; ++j) {
-        for (int i = low[0]; i <= high[0]; ++i) {
-          if (testing::depth_inside(corners, image.centre_mm(i, j, k)) > -1e-9)
-            found[image.offset(i, j, k)].insert(mesh.tissues[t]);
-        }
-      }
-    }
+    for_each_voxel_near(image, corners, [&](std::size_t voxel, double depth) {
+      if (depth > -1e-9) found[voxel].insert(mesh.tissues[t]);
+    });
   }
   for (auto& tissues : found) {
     if (tissues.empty()) tissues.insert(0);
@@ -112,19 +118,9 @@ TEST(LabelLattice, FidelityIsThatOfTheMesh) {
 /// Tissues with a voxel strictly inside a tetrahedron.
 std::set<TissueId> tissues_inside(const TissueImage& image, const Corners& corners) {
   std::set<TissueId> found;
-  for (int k = 0; k < image.size[2]; ++k) {
-    for (int j = 0; j < image.size[1]; ++j) {
-      for (int i = 0; i < image.size[0]; ++i) {
-        const Vec3 centre = image.centre_mm(i, j, k);
-        bool near = true;
-        for (std::size_t a = 0; a < 3; ++a) {
-          const auto [least, most] = std::minmax({corners[0][a], corners[1][a], corners[2][a], corners[3][a]});
-          near = near && centre[a] > least && centre[a] < most;
-        }
-        if (near && testing::depth_inside(corners, centre) > 1e-9) found.insert(image.at(i, j, k));
-      }
-    }
-  }
+  for_each_voxel_near(image, corners, [&](std::size_t voxel, double depth) {
+    if (depth > 1e-9) found.insert(image.voxels[voxel]);
+  });
   return found;
 }
 
