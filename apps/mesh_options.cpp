@@ -82,18 +82,45 @@ void add_labelled(CLI::App& command, const std::string& name, const std::string&
 }
 
 template <class Enum>
-void add_choice(CLI::App& command, const std::string& name, const std::string& help,
-                const std::vector<std::pair<std::string, Enum>>& choices, Enum& target) {
+using Choices = std::vector<std::pair<std::string, Enum>>;
+
+template <class Enum>
+std::string names_of(const Choices<Enum>& choices) {
   std::string names;
   for (const auto& choice : choices) names += (names.empty() ? "" : "|") + choice.first;
-  add_parsed(command, name, names, help, [&target, choices, names](const std::string& text) {
-    for (const auto& [word, value] : choices)
-      if (text == word) {
-        target = value;
-        return;
-      }
-    throw InvalidOption(fmt::format("'{}' is not one of {}", text, names));
-  });
+  return names;
+}
+
+/// Throws InvalidOption.
+template <class Enum>
+Enum parse_choice(std::string_view text, const Choices<Enum>& choices) {
+  for (const auto& [word, value] : choices)
+    if (text == word) return value;
+  throw InvalidOption(fmt::format("'{}' is not one of {}", text, names_of(choices)));
+}
+
+template <class Enum>
+void add_choice(CLI::App& command, const std::string& name, const std::string& help, const Choices<Enum>& choices,
+                Enum& target) {
+  add_parsed(command, name, names_of(choices), help,
+             [&target, choices](const std::string& text) { target = parse_choice(text, choices); });
+}
+
+/// --tissue LABEL=KIND
+void add_kind_option(CLI::App& command, std::map<Label, TissueKind>& kinds) {
+  const Choices<TissueKind> choices = {{"brain", TissueKind::brain},
+                                       {"ventricle", TissueKind::ventricle},
+                                       {"tumour", TissueKind::tumour},
+                                       {"vessel", TissueKind::vessel},
+                                       {"other", TissueKind::other}};
+  add_parsed(command, "--tissue", "LABEL=" + names_of(choices),
+             "elastic material of one tissue, by its kind; may be repeated",
+             [&kinds, choices](const std::string& text) {
+               const std::size_t equals = text.find('=');
+               if (equals == std::string::npos) throw InvalidOption("write it as LABEL=KIND, e.g. 3=tumour");
+               kinds[parse_label(text.substr(0, equals))] = parse_choice(text.substr(equals + 1), choices);
+             })
+      ->trigger_on_parse();
 }
 
 void add_lattice_options(CLI::App& command, LatticeOptions& lattice) {
@@ -129,6 +156,7 @@ void add_deform_options(CLI::App& command, DeformOptions& deform) {
 
 void add_material_options(CLI::App& command, MeshRequest& request) {
   Material& others = request.options.deform.default_material;
+  add_kind_option(command, request.kinds);
   add_material_option(command, "--young", "[LABEL=]PA", "Young's modulus of a tissue, or of all others [3000]",
                       request.young_modulus_pa, others.young_modulus_pa);
   add_material_option(command, "--poisson", "[LABEL=]NU", "Poisson ratio of a tissue, or of all others [0.45]",
@@ -169,6 +197,7 @@ Options options_of(const MeshRequest& request) {
   const auto material_of = [&](Label label) -> Material& {
     return deform.material.try_emplace(label, deform.default_material).first->second;
   };
+  for (const auto& [label, kind] : request.kinds) deform.material[label] = default_material(kind);
   for (const auto& [label, young] : request.young_modulus_pa) material_of(label).young_modulus_pa = young;
   for (const auto& [label, poisson] : request.poisson_ratio) material_of(label).poisson_ratio = poisson;
   return options;
@@ -177,7 +206,8 @@ Options options_of(const MeshRequest& request) {
 void resolve_labels(Options& options, const std::vector<LabelRange>& ranges, const LabelCounts& present) {
   for (const auto& [label, fidelity] : options.lattice.fidelity_label)
     require_label(label, present, "--fidelity-label");
-  for (const auto& [label, material] : options.deform.material) require_label(label, present, "--young or --poisson");
+  for (const auto& [label, material] : options.deform.material)
+    require_label(label, present, "--tissue, --young or --poisson");
   options.labels = select_labels(ranges, present);
 }
 

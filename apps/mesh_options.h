@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "anatomesh/materials.h"
 #include "anatomesh/options.h"
 #include "apps/label_list.h"
 
@@ -16,6 +17,7 @@ namespace anatomesh::apps {
 struct MeshRequest {
   Options options;  ///< without labels and without the materials of single tissues
   std::vector<LabelRange> ranges;
+  std::map<Label, TissueKind> kinds;  ///< whose materials come from the table of the literature
   std::map<Label, double> young_modulus_pa;
   std::map<Label, double> poisson_ratio;
 };

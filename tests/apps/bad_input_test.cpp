@@ -180,6 +180,8 @@ const std::vector<WrongUsage>& wrong_usages() {
       {{"--threads", "-2"}, {"threads", "-2"}},
       {{"--max-memory", "-1"}, {"--max-memory", "-1"}},
       {{"--young", "3=0"}, {"--young", "0"}},
+      {{"--tissue", "3=stone"}, {"--tissue", "stone", "brain|ventricle"}},
+      {{"--tissue", "99=brain"}, {"--tissue", "99", "3, 70000, 4294967295"}},
       {{"--poisson", "3=0.5"}, {"--poisson", "0.5"}},
       {{"--poisson", "0.7"}, {"--poisson", "0.7"}},
       {{"--young", "99=500"}, {"--young", "99", "3, 70000, 4294967295"}},

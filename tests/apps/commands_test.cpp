@@ -117,11 +117,14 @@ TEST_F(MeshAndCheck, any_number_of_threads_writes_the_same_bytes) {
 
 TEST_F(MeshAndCheck, the_report_holds_options_and_measures) {
   const fs::path report = folder_ / "report.json";
-  ASSERT_EQ(
-      mesh({"--report", report, "--fidelity-label", "70000=0.97", "--young", "3=500", "--iterations", "3"}).status, 0);
+  ASSERT_EQ(mesh({"--report", report, "--fidelity-label", "70000=0.97", "--young", "3=500", "--tissue", "3=ventricle",
+                  "--iterations", "3"})
+                .status,
+            0);
   const Json json = Json::parse(read_file(report));
   EXPECT_EQ(json.at("options").at("deform").at("iterations"), 3);
   EXPECT_EQ(json.at("options").at("deform").at("material").at(0).at("young_modulus_pa"), 500);
+  EXPECT_EQ(json.at("options").at("deform").at("material").at(0).at("poisson_ratio"), 0.1);
   EXPECT_EQ(json.at("options").at("lattice").at("bcc_size_mm"), 8);
   EXPECT_EQ(json.at("tissues").at(1).at("label"), 70000);
   EXPECT_EQ(json.at("tissues").at(1).at("fidelity"), 0.97);

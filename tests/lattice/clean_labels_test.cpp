@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 
 #include "lattice/lattice_mesh.h"
@@ -46,18 +47,16 @@ TEST(CleanLabels, SmoothHalvesStay) {
 
 TEST(CleanLabels, LoneTetsGoBackToTheirSurroundings) {
   const TissueMesh clean = halves();
-  const auto neighbours = neighbours_of(clean);
-  std::mt19937 random(2);
-  for (int n = 0; n < 50; ++n) {
+  for (std::size_t t = 0; t < clean.tets.size(); ++t) {
+    const auto corners = testing::corners_of(clean.points_mm, clean.tets[t]);
+    const bool far_from_borders = std::all_of(corners.begin(), corners.end(), [](Vec3 p) {
+      return std::abs(p.x - 12) > 3 && std::min({p.x, p.y, p.z, 24 - p.x, 16 - p.y, 16 - p.z}) > 3;
+    });
+    if (!far_from_borders) continue;
     TissueMesh mesh = clean;
-    const std::size_t t = random() % mesh.tets.size();
-    const bool inside =
-        neighbours[t].size() == 4 && std::all_of(neighbours[t].begin(), neighbours[t].end(),
-                                                 [&](auto m) { return mesh.tissues[m] == mesh.tissues[t]; });
-    if (!inside) continue;
     mesh.tissues[t] = static_cast<TissueId>(3 - mesh.tissues[t]);
     clean_labels(mesh, always);
-    EXPECT_EQ(mesh.tissues, clean.tissues);
+    EXPECT_EQ(mesh.tissues, clean.tissues) << t;
   }
 }
 

