@@ -21,6 +21,7 @@ struct Material {
 /// Stage "lattice": the body-centred cubic lattice and its refinement.
 struct LatticeOptions {
   double bcc_size_mm = 0;  ///< spacing of the coarsest lattice, > 0; 0: 8 times the mean voxel spacing
+  /// A tissue thinner than the smallest size (0.15 short of its fidelity there) gets half of it.
   double min_size_mm = 0;  ///< smallest lattice spacing that fidelity may ask for, > 0; 0: a quarter of bcc_size
   double fidelity = 0.95;  ///< 0 < F <= 1: F1 and F2 that each tissue is refined for
   std::map<Label, double> fidelity_label;  ///< F of single tissues, in place of the above

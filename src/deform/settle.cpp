@@ -24,6 +24,13 @@ Vec3 mean_of_interface_neighbours(const TissueMesh& mesh, const MeshTopology& to
   return (1.0 / static_cast<double>(neighbours.size())) * mean;
 }
 
+// A ball of this many voxels just keeps its place in the smoothed field.
+constexpr std::uint64_t kTinyVoxels = 8;
+
+bool touches_tiny_tissue(std::span<const TissueId> tissues, const TissueImage& image) {
+  return std::any_of(tissues.begin(), tissues.end(), [&](TissueId t) { return image.counts[t] < kTinyVoxels; });
+}
+
 }  // namespace
 
 // Damped Gauss-Newton step on the differences of each share from their mean.
@@ -61,8 +68,8 @@ void settle(TissueMesh& mesh, const MeshTopology& topology, const AngleGuard& gu
             int sweeps, const Stage& stage) {
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     for_each_vertex_by_colour(topology, stage, [&](VertexId v) {
-      if (!topology.on_interface(v)) return;
       const auto tissues = topology.tissues_of_vertex[v];
+      if (!topology.on_interface(v) || touches_tiny_tissue(tissues, field.image())) return;
       const Vec3 from = mesh.points_mm[v];
       const Vec3 relaxed = from + 0.5 * (mean_of_interface_neighbours(mesh, topology, v) - from);
       const Vec3 goal = relaxed + boundary_step(field, relaxed, tissues);

@@ -124,6 +124,9 @@ std::vector<LatticeFidelity> LabelLattice::inherited_fidelity() const {
   return fidelity;
 }
 
+// A tissue this far below its fidelity at the smallest size is thinner than it: it gets one level more.
+constexpr double kFarShort = 0.15;
+
 // By tissue: its boundary is refined in tetrahedra above this level. 0: not at all.
 std::vector<int> LabelLattice::level_limits() const {
   std::vector<LatticeFidelity> fidelity = inherited_fidelity();
@@ -139,6 +142,8 @@ std::vector<int> LabelLattice::level_limits() const {
   for (std::size_t t = 1; t < limit.size(); ++t) {
     const LatticeFidelity& f = fidelity[t];
     if (f.f1() < target_[t] || f.f2() < target_[t]) limit[t] = plan_.levels;
+    if (std::min(f.f1(), f.f2()) < plan_.fidelity[t] - kFarShort)
+      limit[t] = std::min(plan_.levels + 1, lattice_.max_level());
     if (!present[t]) limit[t] = lattice_.max_level();
   }
   return limit;
@@ -156,7 +161,7 @@ bool LabelLattice::wants_refinement(TetRef leaf, const std::vector<int>& level_l
     mixed = mixed || image_.voxels[v] != first;
     limit = std::max(limit, level_limit[image_.voxels[v]]);
   }
-  return (mixed || limit > plan_.levels) && leaf.level < limit;
+  return (mixed || limit == lattice_.max_level()) && leaf.level < limit;
 }
 
 bool LabelLattice::refine_until_faithful(const Stage& stage) {
