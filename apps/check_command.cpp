@@ -59,6 +59,8 @@ void print_verdict(const std::vector<std::string>& failures) {
 
 int run_check(const CheckRequest& request, const Interrupt& interrupt) {
   require_text_output(request.json);
+  require_different_files({request.json, request.mesh});
+  require_different_files({request.json, request.image});
   ProgressBar bar(request.quiet ? Verbosity::quiet : Verbosity::normal);
   bar.show("read", 0);
   const TetMesh mesh = read_mesh(request.mesh);

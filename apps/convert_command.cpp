@@ -24,7 +24,7 @@ int run_convert(const ConvertRequest& request, const Interrupt& interrupt) {
   const TetMesh mesh = read_mesh(request.in);
   interrupt.throw_if_requested();
   write_mesh(request.out, mesh);
-  fmt::print("{}", field("mesh", fmt::format("{}, {}", request.out.string(), byte_size(file_size(request.out)))) +
+  fmt::print("{}", field("mesh", fmt::format("{}, {}", request.out.string(), byte_size(size_on_disk(request.out)))) +
                        field("tetrahedra", grouped(mesh.tets.size())));
   return kDone;
 }

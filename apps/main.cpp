@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <exception>
 #include <new>
 #include <string>
@@ -27,7 +28,10 @@ int run(const Command& command, const Interrupt& interrupt) {
     return status;
   };
   try {
-    return command.run(interrupt);
+    const int status = command.run(interrupt);
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+      return fail(kBadInput, "standard output cannot be written; what the command found is lost");
+    return status;
   } catch (const Cancelled&) {
     print_note("nothing was written");
     return kInterrupted;

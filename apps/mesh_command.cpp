@@ -80,6 +80,7 @@ int run_mesh(const MeshArguments& arguments, const Interrupt& interrupt) {
   check_options(options);
   require_mesh_output(arguments.mesh);
   require_text_output(arguments.report);
+  require_different_files({arguments.image, arguments.mesh, arguments.report});
 
   std::vector<StageTime> times;
   ProgressBar bar(arguments.verbosity());
@@ -99,9 +100,8 @@ int run_mesh(const MeshArguments& arguments, const Interrupt& interrupt) {
   bar.show("write", 0.95);
   timed(times, "write", [&] { return write_mesh(arguments.mesh, result.mesh), 0; });
   bar.finish();
-  const MeshSummary summary = {
-      arguments.image,           arguments.mesh, std::filesystem::file_size(arguments.mesh), &result,
-      &assessment.whole.quality, times};
+  const MeshSummary summary = {arguments.image,           arguments.mesh, size_on_disk(arguments.mesh), &result,
+                               &assessment.whole.quality, times};
   if (!arguments.report.empty()) write_text_file(arguments.report, mesh_report_json({summary, file, assessment}));
   for (const auto& sentences : {file.notes, result.warnings})
     for (const std::string& sentence : sentences) print_warning(sentence);

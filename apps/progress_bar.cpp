@@ -50,7 +50,7 @@ void ProgressBar::start_stage(std::string_view stage, double fraction) {
   stage_ = stage;
   stage_begin_ = Clock::now();
   last_drawn_ = {};
-  if (!on_terminal_) fmt::print(stderr, "{:3.0f} %  {}\n", 100 * fraction, stage_);
+  if (!on_terminal_) put_on_stderr(fmt::format("{:3.0f} %  {}\n", 100 * fraction, stage_));
 }
 
 void ProgressBar::end_stage() {
@@ -65,15 +65,15 @@ void ProgressBar::draw(double fraction) {
   last_drawn_ = now;
   const auto filled = static_cast<std::size_t>(fraction * kBarWidth);
   const std::string bar(filled, '#');
-  fmt::print(stderr, "\r\033[K[{:.<{}}] {:3.0f} %  {}  {}", bar, kBarWidth, 100 * fraction, stage_,
-             time_left(seconds(now - begin_), fraction));
+  put_on_stderr(fmt::format("\r\033[K[{:.<{}}] {:3.0f} %  {}  {}", bar, kBarWidth, 100 * fraction, stage_,
+                            time_left(seconds(now - begin_), fraction)));
   std::fflush(stderr);
   drawn_ = true;
 }
 
 void ProgressBar::erase() {
   if (!drawn_) return;
-  fmt::print(stderr, "\r\033[K");
+  put_on_stderr("\r\033[K");
   drawn_ = false;
 }
 

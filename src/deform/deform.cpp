@@ -5,6 +5,7 @@
 #include "deform/angle_guard.h"
 #include "deform/register_mesh.h"
 #include "deform/settle.h"
+#include "deform/split_bridges.h"
 
 namespace anatomesh {
 namespace {
@@ -23,15 +24,17 @@ std::vector<Material> materials_of(const TissueImage& image, const DeformOptions
 }  // namespace
 
 void deform(TissueMesh& mesh, const TissueImage& image, const DeformOptions& options, const Stage& stage) {
+  const ShapeBounds bounds =
+      ShapeBounds::from_degrees(options.min_dihedral_deg, options.max_dihedral_deg, options.min_mean_ratio);
+  split_bridges(mesh, bounds, stage);
   const MeshTopology topology = make_topology(mesh);
-  const AngleGuard guard(
-      mesh, topology,
-      ShapeBounds::from_degrees(options.min_dihedral_deg, options.max_dihedral_deg, options.min_mean_ratio));
+  const AngleGuard guard(mesh, topology, bounds);
   const std::vector<EdgePoint> targets =
       thin_edge_points(find_edge_points(image, stage.cancel_token()), options.non_connectivity);
-  register_mesh(mesh, topology, guard, targets, materials_of(image, options), options.iterations,
+  const LabelField field(image);
+  register_mesh(mesh, topology, guard, field, targets, materials_of(image, options), options.iterations,
                 stage.part("register", 0.1, 0.7));
-  settle(mesh, topology, guard, LabelField(image), kSettleSweeps, stage.part("settle", 0.7, 1.0));
+  settle(mesh, topology, guard, field, kSettleSweeps, stage.part("settle", 0.7, 1.0));
 }
 
 }  // namespace anatomesh

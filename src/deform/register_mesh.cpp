@@ -5,6 +5,7 @@
 #include "base/parallel.h"
 #include "base/vec.h"
 #include "boundary/matching.h"
+#include "deform/settle.h"
 #include "fem/block_matrix.h"
 #include "fem/solver.h"
 
@@ -49,7 +50,7 @@ struct TissuePart {
 
 }  // namespace
 
-void register_mesh(TissueMesh& mesh, const MeshTopology& topology, const AngleGuard& guard,
+void register_mesh(TissueMesh& mesh, const MeshTopology& topology, const AngleGuard& guard, const LabelField& field,
                    std::span<const EdgePoint> targets, std::span<const Material> materials, int iterations,
                    const Stage& stage) {
   const TissuePart part(mesh, topology);
@@ -68,6 +69,7 @@ void register_mesh(TissueMesh& mesh, const MeshTopology& topology, const AngleGu
     const double scale = kMatchWeight * mean_diagonal(stiffness);
     for (const Match& match : match_points(sources, index)) {
       const VertexId v = vertices[match.source];
+      if (!is_on_its_side(mesh, topology, field, v, match.target_mm)) continue;
       weight[v] = scale * match.confidence;
       wanted[v] = match.target_mm - mesh.points_mm[v];
     }

@@ -7,6 +7,7 @@
 namespace anatomesh {
 namespace {
 
+// More tissues at one point than this are all but unheard of; the point is then settled for the first of them.
 constexpr std::size_t kMaxTissues = 8;
 
 // Solves the symmetric positive definite system A x = b.
@@ -32,6 +33,28 @@ bool touches_tiny_tissue(std::span<const TissueId> tissues, const TissueImage& i
 }
 
 }  // namespace
+
+// Sum over the tissues of (gradient of its share) . (direction from v into it). That direction is the sum of the area
+// vectors of the faces opposite to v.
+bool is_on_its_side(const TissueMesh& mesh, const MeshTopology& topology, const LabelField& field, VertexId v, Vec3 p) {
+  const auto tissues = topology.tissues_of_vertex[v].first(std::min(topology.tissues_of_vertex[v].size(), kMaxTissues));
+  std::array<double, kMaxTissues> share;
+  std::array<Vec3, kMaxTissues> gradient;
+  field.evaluate(p, tissues, std::span(share).first(tissues.size()), std::span(gradient).first(tissues.size()));
+  double alignment = 0;
+  for (const TetId t : topology.tets_of_vertex[v]) {
+    const auto tissue = std::ranges::find(tissues, mesh.tissues[t]);
+    if (tissue == tissues.end()) continue;
+    const auto& tet = mesh.tets[t];
+    const auto corner = static_cast<std::size_t>(std::ranges::find(tet, v) - tet.begin());
+    std::array<Vec3, 3> face;
+    for (std::size_t n = 0; n < 3; ++n) face[n] = mesh.points_mm[tet[(corner + 1 + n) % 4]];
+    const Vec3 area = cross(face[1] - face[0], face[2] - face[0]);
+    const Vec3 outward = dot(area, face[0] - mesh.points_mm[v]) > 0 ? area : -area;
+    alignment += dot(gradient[static_cast<std::size_t>(tissue - tissues.begin())], outward);
+  }
+  return alignment > 0;
+}
 
 // Damped Gauss-Newton step on the differences of each share from their mean.
 Vec3 boundary_step(const LabelField& field, Vec3 p, std::span<const TissueId> tissues) {
@@ -60,8 +83,10 @@ Vec3 boundary_step(const LabelField& field, Vec3 p, std::span<const TissueId> ti
   if (trace * voxel * voxel < 1e-6) return {};  // far from the boundary: no direction to go
   for (std::size_t r = 0; r < 3; ++r) normal[r][r] += 0.01 * trace;
   const Vec3 step = solve_symmetric(normal, rhs);
-  const double length = norm(step), longest = 0.5 * voxel;
-  return length > longest ? (longest / length) * step : step;
+  // No farther than half a voxel along any axis: the field changes within one.
+  const double voxels =
+      std::max({std::abs(step.x) / spacing.x, std::abs(step.y) / spacing.y, std::abs(step.z) / spacing.z});
+  return voxels > 0.5 ? (0.5 / voxels) * step : step;
 }
 
 void settle(TissueMesh& mesh, const MeshTopology& topology, const AngleGuard& guard, const LabelField& field,
@@ -72,6 +97,7 @@ void settle(TissueMesh& mesh, const MeshTopology& topology, const AngleGuard& gu
       if (!topology.on_interface(v) || touches_tiny_tissue(tissues, field.image())) return;
       const Vec3 from = mesh.points_mm[v];
       const Vec3 relaxed = from + 0.5 * (mean_of_interface_neighbours(mesh, topology, v) - from);
+      if (!is_on_its_side(mesh, topology, field, v, relaxed)) return;
       const Vec3 goal = relaxed + boundary_step(field, relaxed, tissues);
       if (guard.advance(v, goal, 2) == 0) guard.advance(v, from + boundary_step(field, from, tissues), 3);
     });

@@ -11,6 +11,10 @@ namespace anatomesh {
 /// of the surface between two tissues, of the junction line of three, the meeting point of four.
 Vec3 boundary_step(const LabelField& field, Vec3 p, std::span<const TissueId> tissues);
 
+/// Whether the tissues around p lie on the sides where the mesh has them at v: false on the far side of a thin sheet,
+/// where stepping to the boundary would turn the sheet inside out.
+bool is_on_its_side(const TissueMesh& mesh, const MeshTopology& topology, const LabelField& field, VertexId v, Vec3 p);
+
 /// Relaxes interface vertices along their surface or junction line and puts them on the boundary, under the guard;
 /// vertices inside make room. `sweeps` times.
 void settle(TissueMesh& mesh, const MeshTopology& topology, const AngleGuard& guard, const LabelField& field,

@@ -11,6 +11,9 @@
 namespace anatomesh {
 namespace {
 
+// Positions in the crop are 32-bit numbers.
+constexpr double kMaxVoxels = 4e9;
+
 struct Box {
   std::array<std::size_t, 3> lo, hi;  // inclusive
   bool empty = true;
@@ -93,8 +96,8 @@ TissueImage make_tissue_image(const LabelImage& image, const std::vector<Label>&
     all.box.add(slice.box);
   }
   if (all.box.empty) {
-    throw InvalidInput(chosen.empty() ? "the image holds background (0) only; at least one voxel must have a label"
-                                      : "no voxel of the image has one of the chosen labels");
+    if (!chosen.empty()) throw InvalidOption("no voxel of the image has one of the chosen labels");
+    throw InvalidInput("the image holds background (0) only; at least one voxel must have a label");
   }
   if (all.counts.size() > std::numeric_limits<TissueId>::max())
     throw InvalidInput("the image has " + std::to_string(all.counts.size()) + " labels; at most 65535 are possible");
@@ -102,6 +105,13 @@ TissueImage make_tissue_image(const LabelImage& image, const std::vector<Label>&
   TissueImage tissues;
   tissues.spacing_mm = image.spacing_mm;
   const auto number = number_labels(all.counts, tissues);
+  double voxels = 1;
+  for (std::size_t a = 0; a < 3; ++a)
+    voxels *= static_cast<double>(all.box.hi[a] - all.box.lo[a] + 1 + 2 * TissueImage::kBorder);
+  if (voxels > kMaxVoxels) {
+    throw InvalidInput("the labelled part of the image has " + std::to_string(voxels) +
+                       " voxels with its border; at most 4e9 are possible");
+  }
   std::size_t total = 1;
   for (std::size_t a = 0; a < 3; ++a) {
     tissues.first[a] = static_cast<std::int64_t>(all.box.lo[a]) - TissueImage::kBorder;

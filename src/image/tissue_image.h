@@ -46,8 +46,8 @@ struct TissueImage {
   }
 };
 
-/// The chosen labels (empty: all) of an image. Throws InvalidInput when no voxel carries one of them, or
-/// when more than 65,535 labels do. Cost: two passes over the voxels.
+/// The chosen labels (empty: all) of an image. Throws InvalidOption when no voxel carries one of them,
+/// InvalidInput when all is background, or for more than 65,535 labels or 4e9 voxels. Cost: two passes over the voxels.
 TissueImage make_tissue_image(const LabelImage& image, const std::vector<Label>& chosen = {});
 
 }  // namespace anatomesh

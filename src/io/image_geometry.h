@@ -18,12 +18,6 @@ struct ImageGeometry {
 /// few digits, but a sheared image cannot be represented.
 inline constexpr double kDirectionTolerance = 1e-4;
 
-/// Largest entry of transpose(M) M - I; NaN where the matrix holds one.
-double deviation_from_orthonormal(const Mat3& matrix);
-
-/// The orthonormal matrix nearest to one that deviates little; keeps a reflection.
-Mat3 nearest_orthonormal(Mat3 matrix);
-
 /// Physical point of the index (i, j, k), which need not be whole.
 Vec3 physical_point(const ImageGeometry& geometry, Vec3 index);
 

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "anatomesh/errors.h"
+#include "base/rotation.h"
 #include "base/vec.h"
 #include "io/number_text.h"
 #include "io/output_file.h"

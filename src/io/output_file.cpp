@@ -67,10 +67,10 @@ fs::path resolved(const fs::path& path) {
   return none || real.empty() ? path : real;
 }
 
-/// Exists and is neither file nor folder: a pipe, a terminal, /dev/null.
+/// A device such as a terminal or /dev/null, or the process's own standard output wherever it goes.
 bool is_stream(const fs::path& path) {
   std::error_code none;
-  return fs::is_other(fs::status(path, none));
+  return fs::is_character_file(path, none) || path == "/dev/stdout";
 }
 
 fs::path unused_name_beside(const fs::path& target) {
@@ -119,6 +119,7 @@ void check_writable(const fs::path& path) {
   std::error_code none;
   if (fs::is_directory(path, none)) throw_cannot_write(path, "it is a folder; name a file in it");
   if (is_stream(path)) return;
+  if (fs::is_other(path, none)) throw_cannot_write(path, "it is a pipe or the like; name a file");
   const fs::path folder = folder_of(resolved(path));
   if (!fs::exists(folder, none))
     throw_cannot_write(path, "there is no folder " + in_quotes(folder) + "; create it first");
@@ -132,6 +133,7 @@ void require_readable(const fs::path& path) {
   std::error_code none;
   if (!fs::exists(path, none)) throw IoError("there is no file " + in_quotes(path));
   if (fs::is_directory(path, none)) return;
+  if (!fs::is_regular_file(path, none)) throw IoError(in_quotes(path) + " is not a file; name a file or a folder");
   const Descriptor file(path, O_RDONLY);
   if (!file.is_open()) throw IoError("cannot open " + in_quotes(path) + ": " + reason(errno));
   if (fs::is_regular_file(path, none) && fs::file_size(path, none) == 0) {

@@ -84,7 +84,7 @@ LatticePoint bcc_locate(Vec3 point);
 /// the signs of a few differences, so every point belongs to exactly one child, also on shared faces.
 int bcc_child_at(const LatticePoint& barycentre, Vec3 point);
 
-/// Barycentric coordinates of a real point, all at once 1 in sum; scaled by 4.
+/// Barycentric coordinates of a real point, times 4: their sum is 4.
 std::array<double, 4> bcc_barycentric_times_4(const LatticePoint& barycentre, Vec3 point);
 
 }  // namespace anatomesh

@@ -13,6 +13,9 @@
 namespace anatomesh {
 namespace {
 
+// Places in the arrays of a level are 32-bit numbers.
+constexpr double kMaxRootTets = 2e9;
+
 // Where the lattice lies over the image.
 struct Placement {
   std::array<std::int32_t, 3> cells;
@@ -30,11 +33,16 @@ Placement place_lattice(const TissueImage& image, const LatticePlan& plan) {
     const double cells = std::ceil(extent / plan.bcc_size_mm) + 2;
     if (cells * 4 * std::ldexp(1.0, plan.levels) > LatticePointMap::kMaxCoordinate) {
       throw InvalidInput("a lattice of " + std::to_string(plan.bcc_size_mm) + " mm over " + std::to_string(extent) +
-                         " mm of image is too large; take a larger bcc_size");
+                         " mm of image is too large; take a larger bcc_size or min_size");
     }
-    place.cells[a] = static_cast<std::int32_t>(cells);
+    place.cells[a] = static_cast<std::int32_t>(cells) + 1;  // the last cell has the far half of its neighbours only
     const double low = (static_cast<double>(image.first[a] + TissueImage::kBorder) - 0.5) * image.spacing_mm[a];
     place.origin_mm[a] = low + 0.5 * extent - 0.5 * cells * plan.bcc_size_mm;
+  }
+  const double tets = 12.0 * place.cells[0] * place.cells[1] * place.cells[2];
+  if (tets > kMaxRootTets) {
+    throw InvalidInput("a lattice of " + std::to_string(plan.bcc_size_mm) + " mm over this image has " +
+                       std::to_string(tets) + " tetrahedra before refinement; take a larger bcc_size");
   }
   return place;
 }
@@ -53,6 +61,13 @@ struct VotedLeaf {
   std::array<Vote, 4> votes;
 };
 
+// What a tissue asks of the tetrahedra that hold its voxels.
+struct Demand {
+  int level_limit = 0;  // its boundary is refined in tetrahedra above this level; 0: not at all
+  bool absent = false;  // no tetrahedron has taken it yet
+  bool thin = false;    // the volume of its tetrahedra is far from that of its voxels: it lies between their centres
+};
+
 class LabelLattice {
  public:
   LabelLattice(const TissueImage& image, const LatticePlan& plan)
@@ -65,14 +80,14 @@ class LabelLattice {
 
   /// Returns whether anything was refined.
   bool refine_until_faithful(const Stage& stage);
-  LabelledLattice extract() const;
+  LabelledLattice extract(const Stage& stage) const;
   void raise_targets(const std::vector<LatticeFidelity>& reached);
 
  private:
   void collect_leaves();
   std::vector<LatticeFidelity> inherited_fidelity() const;
-  std::vector<int> level_limits() const;
-  bool wants_refinement(TetRef leaf, const std::vector<int>& level_limit) const;
+  std::vector<Demand> demands() const;
+  bool wants_refinement(TetRef leaf, const std::vector<Demand>& demands) const;
   template <class Visit>
   void visit_parts(const VotedLeaf& leaf, const Visit& visit) const;
 
@@ -83,6 +98,7 @@ class LabelLattice {
   RedGreenLattice lattice_;
   VoxelVotes votes_;
   std::vector<VotedLeaf> leaves_;
+  int rounds_done_ = 0;
 };
 
 // Calls visit(vote, nodes, part) for a leaf, or for each of its green parts.
@@ -126,50 +142,65 @@ std::vector<LatticeFidelity> LabelLattice::inherited_fidelity() const {
 
 // A tissue this far below its fidelity at the smallest size is thinner than it: it gets one level more.
 constexpr double kFarShort = 0.15;
+// So does one whose volume is off by this share more than 1 - F, and one more at twice of it. Where a tissue is one
+// voxel thick, voxel centres alone would call the lattice faithful.
+constexpr double kFarOff = 0.3;
 
-// By tissue: its boundary is refined in tetrahedra above this level. 0: not at all.
-std::vector<int> LabelLattice::level_limits() const {
+std::vector<Demand> LabelLattice::demands() const {
   std::vector<LatticeFidelity> fidelity = inherited_fidelity();
-  std::vector<char> present(fidelity.size(), 0);
+  std::vector<Demand> demands(fidelity.size(), {0, true, false});
+  std::vector<double> volume_mm3(fidelity.size(), 0);
   for (const VotedLeaf& leaf : leaves_) {
+    const double h = std::ldexp(plan_.bcc_size_mm, -leaf.tet.level);
+    const double part_mm3 = h * h * h / 12 / green_split(lattice_.split_edges(leaf.tet)).count;
     visit_parts(leaf, [&](const Vote& v, const auto&, std::size_t) {
+      volume_mm3[v.tissue] += part_mm3;
       fidelity[v.tissue].in_tets += v.count;
       fidelity[v.tissue].hits += v.hits;
-      present[v.tissue] = 1;
+      demands[v.tissue].absent = false;
     });
   }
-  std::vector<int> limit(fidelity.size(), 0);
-  for (std::size_t t = 1; t < limit.size(); ++t) {
+  demands[0].absent = false;
+  for (std::size_t t = 1; t < demands.size(); ++t) {
     const LatticeFidelity& f = fidelity[t];
-    if (f.f1() < target_[t] || f.f2() < target_[t]) limit[t] = plan_.levels;
+    if (f.f1() < target_[t] || f.f2() < target_[t]) demands[t].level_limit = plan_.levels;
     if (std::min(f.f1(), f.f2()) < plan_.fidelity[t] - kFarShort)
-      limit[t] = std::min(plan_.levels + 1, lattice_.max_level());
-    if (!present[t]) limit[t] = lattice_.max_level();
+      demands[t].level_limit = std::min(plan_.levels + 1, lattice_.max_level());
+    const Vec3 s = image_.spacing_mm;
+    const double off = std::abs(volume_mm3[t] / (static_cast<double>(image_.counts[t]) * s.x * s.y * s.z) - 1);
+    const double far_off = kFarOff + 1 - plan_.fidelity[t];
+    demands[t].thin = off > far_off;
+    if (demands[t].thin)
+      demands[t].level_limit = std::min(plan_.levels + (off > 2 * far_off ? 2 : 1), lattice_.max_level());
+    if (demands[t].absent) demands[t].level_limit = lattice_.max_level();
   }
-  return limit;
+  return demands;
 }
 
 // A leaf is refined when the boundary of a tissue that falls short passes between its voxels, or when it holds
-// a voxel of a tissue that no tetrahedron has taken yet.
-bool LabelLattice::wants_refinement(TetRef leaf, const std::vector<int>& level_limit) const {
+// a voxel of a tissue that no tetrahedron has taken yet or that is too thin to show between voxel centres.
+bool LabelLattice::wants_refinement(TetRef leaf, const std::vector<Demand>& demands) const {
   const auto voxels = votes_.voxels(leaf);
   if (voxels.empty()) return false;
   const TissueId first = image_.voxels[voxels[0]];
-  bool mixed = false;
+  bool mixed = false, holds_hidden = false;
   int limit = 0;
   for (const std::uint32_t v : voxels) {
+    const Demand& demand = demands[image_.voxels[v]];
     mixed = mixed || image_.voxels[v] != first;
-    limit = std::max(limit, level_limit[image_.voxels[v]]);
+    holds_hidden = holds_hidden || demand.absent || (demand.thin && voxels.size() < VoxelVotes::kQuorum);
+    limit = std::max(limit, demand.level_limit);
   }
-  return (mixed || limit == lattice_.max_level()) && leaf.level < limit;
+  return (mixed || holds_hidden) && leaf.level < limit;
 }
 
 bool LabelLattice::refine_until_faithful(const Stage& stage) {
   for (int round = 0;; ++round) {
     collect_leaves();
-    const std::vector<int> level_limit = level_limits();
+    stage.check_cancelled();
+    const std::vector<Demand> asked = demands();
     std::vector<char> wanted(leaves_.size());
-    parallel_for(leaves_.size(), [&](std::size_t i) { wanted[i] = wants_refinement(leaves_[i].tet, level_limit); });
+    parallel_for(leaves_.size(), [&](std::size_t i) { wanted[i] = wants_refinement(leaves_[i].tet, asked); });
     std::vector<TetRef> marked;
     for (std::size_t i = 0; i < leaves_.size(); ++i) {
       if (wanted[i]) marked.push_back(leaves_[i].tet);
@@ -177,7 +208,7 @@ bool LabelLattice::refine_until_faithful(const Stage& stage) {
     if (marked.empty()) return round > 0;
     stage.check_cancelled();
     votes_.descend(lattice_.refine(marked));
-    stage.at(std::min(0.9, 0.2 * (round + 1)));
+    stage.at(std::min(0.9, 0.15 + 0.1 * ++rounds_done_));
   }
 }
 
@@ -227,29 +258,7 @@ struct Extraction {
   }
 };
 
-// Brings the tissues' tetrahedra before the cushion's, and their vertices before its.
-TissueMesh cushion_last(const TissueMesh& mesh) {
-  TissueMesh sorted;
-  std::vector<VertexId> number(mesh.points_mm.size(), static_cast<VertexId>(-1));
-  for (const bool cushion : {false, true}) {
-    for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
-      if ((mesh.tissues[t] == 0) != cushion) continue;
-      std::array<VertexId, 4> tet = mesh.tets[t];
-      for (VertexId& v : tet) {
-        if (number[v] == static_cast<VertexId>(-1)) {
-          number[v] = static_cast<VertexId>(sorted.points_mm.size());
-          sorted.points_mm.push_back(mesh.points_mm[v]);
-        }
-        v = number[v];
-      }
-      sorted.tets.push_back(tet);
-      sorted.tissues.push_back(mesh.tissues[t]);
-    }
-  }
-  return sorted;
-}
-
-LabelledLattice LabelLattice::extract() const {
+LabelledLattice LabelLattice::extract(const Stage& stage) const {
   Extraction taken;
   std::uint32_t tissue_vertices = 0;
   for (const bool cushion : {false, true}) {
@@ -263,14 +272,19 @@ LabelledLattice LabelLattice::extract() const {
         taken.add(nodes, corners, positive, {leaf.tet, static_cast<std::uint32_t>(part), v});
       });
     }
+    stage.check_cancelled();
     if (!cushion) tissue_vertices = static_cast<std::uint32_t>(taken.vertices.points().size());
   }
   const double fine_unit = place_.unit_mm / static_cast<double>(1 << lattice_.max_level());
   for (const LatticePoint& p : taken.vertices.points()) {
     taken.mesh.points_mm.push_back(place_.origin_mm + Vec3{fine_unit * p[0], fine_unit * p[1], fine_unit * p[2]});
   }
-  const auto has_weak_vote = [&](TetId t) { return taken.origins[t].vote.hits < VoxelVotes::kQuorum / 2; };
+  const auto has_weak_vote = [&](TetId t) {
+    const Origin& origin = taken.origins[t];
+    return !votes_.hands_label_down(origin.leaf) && origin.vote.hits < VoxelVotes::kQuorum / 2;
+  };
   clean_labels(taken.mesh, has_weak_vote);
+  stage.check_cancelled();
 
   LabelledLattice result;
   result.fidelity = inherited_fidelity();
@@ -281,7 +295,7 @@ LabelledLattice LabelLattice::extract() const {
     result.fidelity[tissue].in_tets += origin.vote.count;
     result.fidelity[tissue].hits += kept ? origin.vote.hits : votes_.voxels_of(origin.leaf, origin.part, tissue);
   }
-  result.mesh = cushion_last(taken.mesh);
+  result.mesh = with_cushion_last(taken.mesh);
   return result;
 }
 
@@ -294,7 +308,8 @@ LabelledLattice build_labelled_lattice(const TissueImage& image, const LatticePl
   LabelledLattice result;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     if (!lattice.refine_until_faithful(stage) && attempt > 0) break;
-    result = lattice.extract();
+    stage.check_cancelled();
+    result = lattice.extract(stage);
     lattice.raise_targets(result.fidelity);
   }
   stage.at(1);

@@ -30,7 +30,6 @@ class RedGreenLattice {
   RedGreenLattice(std::array<std::int32_t, 3> root_cells, int max_level);
 
   int max_level() const { return static_cast<int>(levels_.size()) - 1; }
-  std::array<std::int32_t, 3> root_cells() const { return root_cells_; }
 
   /// Places in the arrays of a level (12 a lattice cube that holds any; not all of them exist).
   std::size_t slot_count(int level) const { return levels_[static_cast<std::size_t>(level)].state.size(); }
@@ -42,8 +41,7 @@ class RedGreenLattice {
   unsigned split_edges(TetRef t) const { return state(t) & kEdges; }
 
   LatticePoint barycentre(TetRef t) const;
-  /// The tetrahedron of a level with this barycentre; it must be inside the lattice.
-  /// Returns false when it does not exist.
+  /// The tetrahedron of a level with this barycentre. Returns false when it does not exist.
   bool find(int level, const LatticePoint& barycentre, TetRef& found) const;
   std::array<TetRef, 8> children(TetRef refined) const;
 

@@ -34,12 +34,6 @@ class Ballot {
     }
     return best;
   }
-  double votes_of(TissueId tissue) const {
-    for (const auto& e : entries_) {
-      if (e.first == tissue) return e.second;
-    }
-    return 0;
-  }
   void clear() {
     entries_.clear();
     last_ = 0;

@@ -27,12 +27,13 @@ struct ShapeBounds {
   double smallest_cos = -1;
   double min_mean_ratio = 0;
 
-  /// Angles in degrees. The bounds are kept with a margin of 1e-6 degrees and 1e-9 of mean ratio, so that they
-  /// still hold after the change of frame and on the coordinates as written.
+  /// Angles in degrees. However loose the bounds, a mean ratio of 0.01 is kept, so that volumes stay positive and
+  /// vertices apart. The bounds are kept with a margin of 1e-6 degrees and 1e-9 of mean ratio, so that they still hold
+  /// after the change of frame and on the coordinates as written.
   static ShapeBounds from_degrees(double min_dihedral_deg, double max_dihedral_deg, double min_mean_ratio) {
     constexpr double kRadians = std::numbers::pi / 180, kMarginDeg = 1e-6;
     return {std::cos((min_dihedral_deg + kMarginDeg) * kRadians), std::cos((max_dihedral_deg - kMarginDeg) * kRadians),
-            min_mean_ratio + 1e-9};
+            std::max(min_mean_ratio, 0.01) + 1e-9};
   }
 
   bool hold(const ShapeMeasure& s) const {
@@ -77,7 +78,7 @@ inline ShapeMeasure measure_shape(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
   return shape;
 }
 
-/// bounds.hold(measure_shape(a, b, c, d)) without a root or a division of it.
+/// bounds.hold(measure_shape(a, b, c, d)) without an inverse trigonometric function, a cube root or a division.
 inline bool within(const ShapeBounds& bounds, Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
   const TetGeometry g(a, b, c, d);
   const double half_volume6 = 0.5 * g.volume6, mean_edge = bounds.min_mean_ratio / 12 * g.edges;

@@ -19,4 +19,8 @@ struct TissueMesh {
   std::vector<TissueId> tissues;  ///< one a tetrahedron
 };
 
+/// The same mesh with the tissues' tetrahedra before the cushion's, and their vertices before those of the cushion
+/// alone; otherwise in the same order. The stages rely on it. Vertices of no tetrahedron are dropped.
+TissueMesh with_cushion_last(const TissueMesh& mesh);
+
 }  // namespace anatomesh

@@ -9,6 +9,7 @@
 #include "anatomesh/errors.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "base/rotation.h"
 #include "base/vec.h"
 
 namespace anatomesh {
@@ -38,20 +39,11 @@ void require(const Range& r) {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+// Lengths beyond these lose the shape of tetrahedra to rounding.
+constexpr double kMinSpacing = 1e-6, kMaxSpacing = 1e6, kFarthest = 1e8;
+
 // The directions as columns must be orthonormal to this.
 constexpr double kRotationTolerance = 1e-4;
-
-double rotation_defect(const Mat3& m) {
-  double worst = 0;
-  for (std::size_t a = 0; a < 3; ++a) {
-    for (std::size_t b = 0; b < 3; ++b) {
-      double product = a == b ? -1 : 0;
-      for (std::size_t r = 0; r < 3; ++r) product += m[r][a] * m[r][b];
-      if (!(std::abs(product) <= worst)) worst = std::isnan(product) ? kInfinity : std::abs(product);
-    }
-  }
-  return worst;
-}
 
 void require_label(const TissueImage& tissues, Label label, const char* option) {
   if (label != 0 && std::binary_search(tissues.labels.begin(), tissues.labels.end(), label)) return;
@@ -59,14 +51,14 @@ void require_label(const TissueImage& tissues, Label label, const char* option) 
                       ", which is not among the labels to mesh");
 }
 
-// Area of all voxel faces between two tissues, mm^2.
-double boundary_area_mm2(const TissueImage& image) {
+// Area of all voxel faces between two tissues, mm^2. The crop's last rows and slices are background.
+double interface_area_mm2(const TissueImage& image) {
   const Vec3 s = image.spacing_mm;
   const auto sy = static_cast<std::size_t>(image.size[0]), sz = sy * static_cast<std::size_t>(image.size[1]);
   const auto rows = image.voxels.size() / sy;
   return parallel_sum(rows, 256, [&](std::size_t begin, std::size_t end) {
     std::array<std::size_t, 3> faces = {0, 0, 0};
-    for (std::size_t v = begin * sy; v + sz < std::min(end * sy, image.voxels.size()); ++v) {
+    for (std::size_t v = begin * sy; v < std::min(end * sy, image.voxels.size() - sz); ++v) {
       faces[0] += image.voxels[v] != image.voxels[v + 1];
       faces[1] += image.voxels[v] != image.voxels[v + sy];
       faces[2] += image.voxels[v] != image.voxels[v + sz];
@@ -74,6 +66,16 @@ double boundary_area_mm2(const TissueImage& image) {
     return static_cast<double>(faces[0]) * s.y * s.z + static_cast<double>(faces[1]) * s.x * s.z +
            static_cast<double>(faces[2]) * s.x * s.y;
   });
+}
+
+}  // namespace
+
+namespace {
+
+void require_ordered_sizes(const LatticeOptions& l) {
+  if (l.min_size_mm <= l.bcc_size_mm) return;
+  throw InvalidOption("min_size_mm is " + text(l.min_size_mm) + "; it must be at most bcc_size_mm, " +
+                      text(l.bcc_size_mm));
 }
 
 }  // namespace
@@ -101,10 +103,7 @@ void check_options(const Options& o) {
     ranges.push_back({"poisson_ratio", material.poisson_ratio, 0, 0.5, true, false});
   }
   for (const Range& r : ranges) require(r);
-  if (l.bcc_size_mm > 0 && l.min_size_mm > l.bcc_size_mm) {
-    throw InvalidOption("min_size_mm is " + text(l.min_size_mm) + "; it must be at most bcc_size_mm, " +
-                        text(l.bcc_size_mm));
-  }
+  if (l.bcc_size_mm > 0) require_ordered_sizes(l);
 }
 
 void check_image(const LabelImage& image) {
@@ -112,12 +111,14 @@ void check_image(const LabelImage& image) {
   for (std::size_t a = 0; a < 3; ++a) {
     if (image.size[a] < 1) throw InvalidInput("the image has no voxels along axis " + std::to_string(a));
     const double s = image.spacing_mm[a];
-    if (!(s > 0) || std::isinf(s)) {
+    if (!(s >= kMinSpacing && s <= kMaxSpacing)) {
       throw InvalidInput("the voxel spacing along axis " + std::to_string(a) + " is " + text(s) +
-                         "; it must be a positive number of mm");
+                         " mm; it must be from " + text(kMinSpacing) + " to " + text(kMaxSpacing));
     }
-    if (!std::isfinite(image.origin_mm[a]))
-      throw InvalidInput("the origin is not finite along axis " + std::to_string(a));
+    if (!(std::abs(image.origin_mm[a]) <= kFarthest * s)) {
+      throw InvalidInput("the origin along axis " + std::to_string(a) + " is " + text(image.origin_mm[a]) +
+                         " mm; it must be within " + text(kFarthest) + " voxels of 0, or angles are lost to rounding");
+    }
     voxels *= static_cast<double>(image.size[a]);
   }
   if (voxels != static_cast<double>(image.voxels.size())) {
@@ -125,7 +126,7 @@ void check_image(const LabelImage& image) {
                        " voxels; the numbers must be equal");
   }
   if (voxels > 4e9) throw InvalidInput("the image has " + text(voxels) + " voxels; at most 4e9 are possible");
-  if (const double defect = rotation_defect(image.direction); defect > kRotationTolerance) {
+  if (const double defect = deviation_from_orthonormal(image.direction); !(defect <= kRotationTolerance)) {
     throw InvalidInput("the direction matrix is off a rotation by " + text(defect) +
                        "; its columns must be orthogonal unit vectors");
   }
@@ -136,6 +137,7 @@ Options with_sizes_filled_in(const Options& options, const LabelImage& image) {
   const Vec3 s = image.spacing_mm;
   if (filled.lattice.bcc_size_mm == 0) filled.lattice.bcc_size_mm = 8 * (s.x + s.y + s.z) / 3;
   if (filled.lattice.min_size_mm == 0) filled.lattice.min_size_mm = filled.lattice.bcc_size_mm / 4;
+  require_ordered_sizes(filled.lattice);
   return filled;
 }
 
@@ -148,10 +150,17 @@ void check_labels_exist(const Options& options, const TissueImage& tissues) {
 void check_memory(const Options& options, const LabelImage& image, const TissueImage& tissues) {
   // Measured: the finest tetrahedra lie in a layer along the boundaries, about this many for each square of the
   // smallest lattice spacing, and each takes this much while the mesh deforms.
-  constexpr double kTetsPerSquare = 10, kBytesPerTet = 700, kBytesPerVoxel = 6, kGib = 1024.0 * 1024 * 1024;
+  // The coarsest lattice covers the whole crop.
+  constexpr double kTetsPerSquare = 12, kBytesPerTet = 700, kBytesPerVoxel = 6, kBytesPerCell = 1200;
+  constexpr double kGib = 1024.0 * 1024 * 1024;
   const double h = options.lattice.min_size_mm;
-  const double tets = kTetsPerSquare * boundary_area_mm2(tissues) / (h * h);
-  const double needed_gib = (tets * kBytesPerTet + static_cast<double>(tissues.voxels.size()) * kBytesPerVoxel) / kGib;
+  const double tets = kTetsPerSquare * interface_area_mm2(tissues) / (h * h);
+  double cells = 1;
+  for (std::size_t a = 0; a < 3; ++a)
+    cells *= tissues.size[a] * tissues.spacing_mm[a] / options.lattice.bcc_size_mm + 3;
+  const double needed_gib =
+      (tets * kBytesPerTet + cells * kBytesPerCell + static_cast<double>(tissues.voxels.size()) * kBytesPerVoxel) /
+      kGib;
   const double limit_gib = options.max_memory_gib > 0 ? options.max_memory_gib : available_memory_gib();
   if (limit_gib == 0 || needed_gib <= limit_gib) return;
   throw InvalidInput("meshing this image of " + std::to_string(image.voxels.size()) + " voxels would take about " +

@@ -6,7 +6,8 @@
 
 namespace anatomesh {
 
-/// Options with the sizes that were 0 set from the image's spacing.
+/// Options with the sizes that were 0 set from the image's spacing. Throws InvalidOption when min_size_mm is above
+/// bcc_size_mm.
 Options with_sizes_filled_in(const Options& options, const LabelImage& image);
 
 /// Throws InvalidOption for a label in `labels`, `fidelity_label` or `material` that the image does not have.

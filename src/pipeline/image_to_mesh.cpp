@@ -7,11 +7,13 @@
 #include <string>
 
 #include "base/parallel.h"
+#include "base/rotation.h"
 #include "base/stage.h"
 #include "base/vec.h"
 #include "deform/deform.h"
 #include "image/tissue_image.h"
 #include "lattice/label_lattice.h"
+#include "mesh/tet_shape.h"
 #include "pipeline/checks.h"
 
 namespace anatomesh {
@@ -35,11 +37,13 @@ class Stopwatch {
 LatticePlan make_plan(const TissueImage& image, const LatticeOptions& options) {
   LatticePlan plan;
   plan.bcc_size_mm = options.bcc_size_mm;
-  plan.levels = std::max(0, static_cast<int>(std::floor(std::log2(options.bcc_size_mm / options.min_size_mm) + 1e-9)));
+  constexpr double kMaxLevels = 16;  // far more than coordinates allow
+  plan.levels = static_cast<int>(
+      std::clamp(std::floor(std::log2(options.bcc_size_mm / options.min_size_mm) + 1e-9), 0.0, kMaxLevels));
   // Deep enough for a tissue of one voxel: tetrahedra a quarter as wide as the thinnest side of it.
   const double thinnest = std::min({image.spacing_mm.x, image.spacing_mm.y, image.spacing_mm.z});
   const double smallest = std::ldexp(options.bcc_size_mm, -plan.levels);
-  plan.extra_levels = std::clamp(static_cast<int>(std::ceil(std::log2(4 * smallest / thinnest))), 0, 8);
+  plan.extra_levels = static_cast<int>(std::clamp(std::ceil(std::log2(4 * smallest / thinnest)), 0.0, 8.0));
   plan.fidelity.assign(image.labels.size(), options.fidelity);
   for (const auto& [label, fidelity] : options.fidelity_label) {
     const auto at = std::lower_bound(image.labels.begin(), image.labels.end(), label);
@@ -53,7 +57,8 @@ struct ToPhysical {
   Mat3 rotation;
   Vec3 origin_mm;
 
-  ToPhysical(const LabelImage& image, Frame frame) : rotation(image.direction), origin_mm(image.origin_mm) {
+  ToPhysical(const LabelImage& image, Frame frame)
+      : rotation(nearest_orthonormal(image.direction)), origin_mm(image.origin_mm) {
     if (frame == Frame::lps) return;
     for (const std::size_t axis : {0u, 1u}) {
       for (double& entry : rotation[axis]) entry = -entry;
@@ -111,6 +116,26 @@ std::vector<std::string> describe_losses(const std::vector<TissueOutcome>& tissu
   return warnings;
 }
 
+// A tissue thinner than the lattice can lose most of its volume to the deformation: that must not pass unnoticed.
+void describe_shrinkage(const TissueMesh& mesh, const TissueImage& image, std::vector<std::string>& warnings) {
+  constexpr double kMuch = 0.5;
+  std::vector<double> volume_mm3(image.labels.size(), 0);
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    const auto& v = mesh.tets[t];
+    volume_mm3[mesh.tissues[t]] +=
+        six_volumes(mesh.points_mm[v[0]], mesh.points_mm[v[1]], mesh.points_mm[v[2]], mesh.points_mm[v[3]]) / 6;
+  }
+  const Vec3 s = image.spacing_mm;
+  for (std::size_t t = 1; t < volume_mm3.size(); ++t) {
+    const double off = volume_mm3[t] / (static_cast<double>(image.counts[t]) * s.x * s.y * s.z) - 1;
+    if (volume_mm3[t] == 0 || std::abs(off) <= kMuch) continue;
+    warnings.push_back("label " + std::to_string(image.labels[t]) + " (" + std::to_string(image.counts[t]) +
+                       (image.counts[t] == 1 ? " voxel" : " voxels") + ") has " +
+                       std::to_string(static_cast<int>(std::round(100 * (1 + off)))) +
+                       " % of its volume in the mesh: it is thin for this lattice; a smaller bcc_size may help");
+  }
+}
+
 }  // namespace
 
 Result image_to_mesh(const LabelImage& image, const Options& options, const Progress& progress) {
@@ -139,6 +164,7 @@ Result image_to_mesh(const LabelImage& image, const Options& options, const Prog
   const Stage finishing(progress, "finish", 0.95, 1.0);
   result.tissues = describe_tissues(tissues, plan, lattice);
   result.warnings = describe_losses(result.tissues);
+  describe_shrinkage(lattice.mesh, tissues, result.warnings);
   result.mesh = finish(lattice.mesh, tissues, ToPhysical(image, options.frame));
   if (result.mesh.tets.empty()) throw MeshingFailed("no tissue could be represented; take a smaller bcc_size");
   watch.stage_done("finish");

@@ -241,6 +241,18 @@ TEST(LabelLattice, FidelityOfOneTissueRefinesThereOnly) {
             std::min(coarse.fidelity[2].f1(), coarse.fidelity[2].f2()));
 }
 
+// Without one, a tissue that falls short is refined along its boundary, not all through.
+TEST(LabelLattice, ExtraLevelsAreForMissingTissuesOnly) {
+  const TissueImage image = make_tissue_image(testing::sphere(12));
+  LatticePlan plan = plan_for(image, 8, 1);
+  plan.extra_levels = 3;
+  const TissueMesh with = build(image, plan).mesh;
+  plan.extra_levels = 0;
+  const TissueMesh without = build(image, plan).mesh;
+  EXPECT_EQ(without.tets.size(), with.tets.size());
+  EXPECT_EQ(without.points_mm, with.points_mm);
+}
+
 TEST(LabelLattice, HigherFidelityTakesMoreTets) {
   const TissueImage image = make_tissue_image(testing::sphere());
   const auto tets_at = [&](double fidelity) { return build(image, plan_for(image, 16, fidelity)).mesh.tets.size(); };
