@@ -16,12 +16,8 @@ from measured_run import measure, stage_seconds
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 BEGIN, END = "<!-- results:begin -->", "<!-- results:end -->"
 
-# Options of `anatomesh mesh`: no more tetrahedra than the authors' code makes of the image.
-OPTIONS = {
-    "ventricles": ["--bcc-size", "8", "--min-size", "1", "--fidelity", "0.97"],
-    "nidus": ["--bcc-size", "6", "--min-size", "1.5", "--fidelity", "0.98"],
-    "brain": ["--bcc-size", "9", "--min-size", "4.5", "--fidelity", "0.97"],
-}
+# Options of `anatomesh mesh`: with its defaults it makes fewer tetrahedra of these images than the authors' code.
+OPTIONS = {"ventricles": [], "nidus": [], "brain": []}
 
 AUTHORS = {
     "ventricles": {"tets": 102583, "seconds": 5.6 + 27.7, "dihedral": (0.54, 179.3), "dice": 0.903, "volume": -18.8,
@@ -61,7 +57,8 @@ def table(program, folder):
     rows = HEADER
     for name, authors in AUTHORS.items():
         rows += table_row(name, "authors, 2014", authors)
-        rows += table_row("`" + " ".join(OPTIONS[name]) + "`", "**Anatomesh**", our_figures(program, folder, name))
+        options = "`" + " ".join(OPTIONS[name]) + "`" if OPTIONS[name] else "default options"
+        rows += table_row(options, "**Anatomesh**", our_figures(program, folder, name))
     return rows
 
 

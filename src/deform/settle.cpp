@@ -32,6 +32,20 @@ bool touches_tiny_tissue(std::span<const TissueId> tissues, const TissueImage& i
   return std::any_of(tissues.begin(), tissues.end(), [&](TissueId t) { return image.counts[t] < kTinyVoxels; });
 }
 
+// A few steps: one is at most half a voxel long, and relaxing can take a vertex farther from the boundary than that.
+Vec3 on_boundary(const LabelField& field, Vec3 p, std::span<const TissueId> tissues) {
+  constexpr int kSteps = 4;
+  constexpr double kEnough = 0.02;  // of a voxel
+  const Vec3 spacing = field.image().spacing_mm;
+  const double enough = kEnough * std::min({spacing.x, spacing.y, spacing.z});
+  for (int n = 0; n < kSteps; ++n) {
+    const Vec3 step = boundary_step(field, p, tissues);
+    p += step;
+    if (norm(step) < enough) break;
+  }
+  return p;
+}
+
 }  // namespace
 
 // Sum over the tissues of (gradient of its share) . (direction from v into it). That direction is the sum of the area
@@ -53,7 +67,7 @@ bool is_on_its_side(const TissueMesh& mesh, const MeshTopology& topology, const 
     const Vec3 outward = dot(area, face[0] - mesh.points_mm[v]) > 0 ? area : -area;
     alignment += dot(gradient[static_cast<std::size_t>(tissue - tissues.begin())], outward);
   }
-  return alignment > 0;
+  return alignment >= 0;
 }
 
 // Damped Gauss-Newton step on the differences of each share from their mean.
@@ -98,8 +112,8 @@ void settle(TissueMesh& mesh, const MeshTopology& topology, const AngleGuard& gu
       const Vec3 from = mesh.points_mm[v];
       const Vec3 relaxed = from + 0.5 * (mean_of_interface_neighbours(mesh, topology, v) - from);
       if (!is_on_its_side(mesh, topology, field, v, relaxed)) return;
-      const Vec3 goal = relaxed + boundary_step(field, relaxed, tissues);
-      if (guard.advance(v, goal, 2) == 0) guard.advance(v, from + boundary_step(field, from, tissues), 3);
+      const Vec3 goal = on_boundary(field, relaxed, tissues);
+      if (guard.advance(v, goal, 2) == 0) guard.advance(v, on_boundary(field, from, tissues), 3);
     });
     relax_interior(mesh, topology, guard, stage);
     stage.at(static_cast<double>(sweep + 1) / sweeps);

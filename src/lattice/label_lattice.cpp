@@ -144,7 +144,7 @@ std::vector<LatticeFidelity> LabelLattice::inherited_fidelity() const {
 constexpr double kFarShort = 0.15;
 // So does one whose volume is off by this share more than 1 - F, and one more at twice of it. Where a tissue is one
 // voxel thick, voxel centres alone would call the lattice faithful.
-constexpr double kFarOff = 0.3;
+constexpr double kFarOff = 0.25;
 
 std::vector<Demand> LabelLattice::demands() const {
   std::vector<LatticeFidelity> fidelity = inherited_fidelity();

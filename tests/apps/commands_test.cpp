@@ -1,5 +1,6 @@
 // What the commands do when all is well.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -155,6 +156,29 @@ TEST_F(MeshAndCheck, convert_keeps_all) {
   EXPECT_TRUE(a.points_mm == b.points_mm);
   EXPECT_TRUE(a.tets == b.tets);
   EXPECT_TRUE(a.labels == b.labels);
+}
+
+TEST_F(MeshAndCheck, an_output_is_never_an_input_or_another_output) {
+  const std::string before = read_file(image_);
+  const std::string link = folder_ / "link.vtu";
+  fs::create_symlink(image_, link);
+  const std::vector<std::vector<std::string>> clashes = {{"mesh", image_, "-o", mesh_, "--report", image_},
+                                                         {"mesh", image_, "-o", mesh_, "--report", mesh_},
+                                                         {"mesh", image_, "-o", link}};
+  for (const auto& arguments : clashes) {
+    const ProcessResult result = run_program(arguments);
+    EXPECT_EQ(result.status, 2) << result.err;
+    EXPECT_TRUE(contains(result.err, "the same file")) << result.err;
+    EXPECT_EQ(read_file(image_), before);
+    EXPECT_FALSE(fs::exists(mesh_));
+  }
+}
+
+TEST_F(MeshAndCheck, a_pipe_is_no_output) {
+  const std::string pipe = folder_ / "pipe.vtu";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_EQ(run_program({"mesh", image_, "-o", pipe}).status, 3);
+  EXPECT_EQ(run_program({"info", pipe}).status, 3);
 }
 
 }  // namespace
