@@ -47,6 +47,7 @@ void to_json(Json& json, const Conformity& v) {
           {"faces", v.faces},
           {"outer_faces", v.outer_faces},
           {"faces_in_more_than_two_tets", v.faces_in_more_than_two_tets},
+          {"folded_tets", v.folded_tets},
           {"duplicate_vertices", v.duplicate_vertices},
           {"unused_vertices", v.unused_vertices},
           {"hanging_vertices", v.hanging_vertices},

@@ -62,6 +62,7 @@ struct Conformity {
   std::uint64_t faces = 0;            ///< distinct faces
   std::uint64_t outer_faces = 0;      ///< of one tetrahedron only
   std::uint64_t faces_in_more_than_two_tets = 0;
+  std::uint64_t folded_tets = 0;         ///< with another on the same side of a shared face: they overlap
   std::uint64_t duplicate_vertices = 0;  ///< at the place of a vertex counted already, within 1e-9 of the mesh's size
   std::uint64_t unused_vertices = 0;     ///< of no tetrahedron (background ones count as use)
   /// Vertices that lie, within 1e-6 of the mean edge, inside an outer face or its edge, or at the middle

@@ -132,6 +132,24 @@ std::uint64_t count_faces_before_material(const TissueMesh& mesh, std::span<cons
   });
 }
 
+std::uint64_t count_folded_tets(const TissueMesh& mesh, const Neighbours& neighbours) {
+  return count_where(mesh.tets.size(), [&](std::size_t t) {
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+      const TetId other = neighbours.across[t][corner];
+      if (other >= kCrowded || other < t) continue;
+      const auto at = [&](std::size_t n) { return mesh.points_mm[mesh.tets[t][(corner + n) % 4]]; };
+      const Vec3 normal = cross(at(2) - at(1), at(3) - at(1));
+      const auto& behind = mesh.tets[other];
+      const auto apex = std::ranges::find_if(behind, [&](VertexId v) {
+        return v != mesh.tets[t][(corner + 1) % 4] && v != mesh.tets[t][(corner + 2) % 4] &&
+               v != mesh.tets[t][(corner + 3) % 4];
+      });
+      if (dot(normal, at(0) - at(1)) * dot(normal, mesh.points_mm[*apex] - at(1)) > 0) return true;
+    }
+    return false;
+  });
+}
+
 }  // namespace
 
 Conformity check_conformity(const TissueMesh& mesh, const VertexStars& stars, const Neighbours& neighbours,
@@ -142,6 +160,7 @@ Conformity check_conformity(const TissueMesh& mesh, const VertexStars& stars, co
   result.faces = neighbours.faces;
   result.outer_faces = neighbours.outer_faces;
   result.faces_in_more_than_two_tets = neighbours.crowded_faces;
+  result.folded_tets = count_folded_tets(mesh, neighbours);
 
   const std::vector<VertexId> used = used_vertices(stars);
   result.unused_vertices = count_unused(mesh, used);

@@ -33,6 +33,7 @@ void check_counts(const Assessment& a, std::vector<std::string>& failed) {
       {q.degenerate, "tetrahedron has no volume", "tetrahedra have no volume"},
       {c.faces_in_more_than_two_tets, "face belongs to more than two tetrahedra",
        "faces belong to more than two tetrahedra"},
+      {c.folded_tets, "tetrahedron overlaps the one behind a face", "tetrahedra overlap the one behind a face"},
       {c.hanging_vertices, "vertex hangs on an edge or face of other tetrahedra",
        "vertices hang on edges or faces of other tetrahedra"},
       {c.duplicate_vertices, "vertex lies at the place of another", "vertices lie at the place of another"},

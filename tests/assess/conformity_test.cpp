@@ -29,6 +29,7 @@ TEST(Conformity, EveryShapeAsVoxelsIsConforming) {
     EXPECT_EQ(c.unused_vertices, 0u) << name;
     EXPECT_EQ(c.hanging_vertices, 0u) << name;
     EXPECT_EQ(c.outer_faces_with_material_outside, 0u) << name;
+    EXPECT_EQ(c.folded_tets, 0u) << name;
     EXPECT_EQ(c.voxel_centres_in_several_tets, 0u) << name;
     EXPECT_FALSE(c.negative_orientation) << name;
   }
@@ -40,6 +41,20 @@ TEST(Conformity, FaceInThreeTetrahedra) {
   mesh.tets.insert(mesh.tets.end(), {{0, 2, 1, 4}, {0, 2, 1, 5}});
   mesh.labels = {1, 1, 1};
   EXPECT_EQ(assess(mesh).conformity.faces_in_more_than_two_tets, 1u);
+}
+
+TEST(Conformity, TetrahedraOnTheSameSideOfTheirFaceAreFolded) {
+  TetMesh twice = testing::single_tet({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}});
+  twice.tets.push_back(twice.tets[0]);
+  twice.labels.push_back(2);
+  const Assessment same = assess(twice);
+  EXPECT_EQ(same.conformity.folded_tets, 1u);
+  EXPECT_FALSE(failed_guarantees(same, {.min_dihedral_deg = 0, .max_dihedral_deg = 180, .min_mean_ratio = 0}).empty());
+  TetMesh over = testing::single_tet({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}});
+  over.points_mm.push_back({0.2, 0.2, 2});
+  over.tets.push_back({0, 1, 2, 4});
+  over.labels.push_back(1);
+  EXPECT_EQ(assess(over).conformity.folded_tets, 1u);
 }
 
 TEST(Conformity, DuplicateAndUnusedVertices) {
