@@ -5,7 +5,7 @@
 usage: file_to_file.py IMAGE [IMAGE ...] [--program PATH] [--runs N] [--options "..."]
 
 Prints a row an image: tetrahedra, the median of the seconds of N runs with their range, tetrahedra a second, and the
-largest peak memory. Nothing else should run on the machine; compare figures of one session only.
+largest peak memory. Nothing else should run on the machine; compare figures of one run only.
 """
 import argparse
 import json
