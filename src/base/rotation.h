@@ -5,6 +5,10 @@
 
 namespace anatomesh {
 
+/// How far the direction matrix of an image may be from orthonormal: files keep few digits, but a sheared image cannot
+/// be represented.
+inline constexpr double kDirectionTolerance = 1e-4;
+
 /// Largest deviation of the products of a matrix's columns from those of orthogonal unit vectors; NaN if any entry is.
 double deviation_from_orthonormal(const Mat3& matrix);
 

@@ -1,7 +1,8 @@
 // Registration of the mesh onto the edge points of the image, regularised by a linear-elastic model, after Liu,
 // Foteinos, Chernikov and Chrisochoides, "Mesh deformation-based multi-tissue mesh generation for brain images",
-// Engineering with Computers 28, 2012. Departures: matching is to the nearest edge point of the same pair of tissues,
-// and every step goes through the angle guard; what a vertex could not go is asked for again in the next iteration.
+// Engineering with Computers 28, 2012. Departures: matching is to the nearest edge point of the same pair of tissues
+// (unless it lies on the far side of a thin sheet), and every step goes through the angle guard; what a vertex could
+// not go is asked for again in the next iteration.
 #pragma once
 
 #include <span>

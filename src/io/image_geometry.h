@@ -14,15 +14,12 @@ struct ImageGeometry {
   Mat3 direction = kIdentity3;
 };
 
-/// How far a direction matrix may be from orthonormal (largest entry of transpose(M) M - I): files keep
-/// few digits, but a sheared image cannot be represented.
-inline constexpr double kDirectionTolerance = 1e-4;
-
 /// Physical point of the index (i, j, k), which need not be whole.
 Vec3 physical_point(const ImageGeometry& geometry, Vec3 index);
 
 /// Throws InvalidInput naming the file unless spacing and origin are finite, spacing is positive and
-/// direction is orthonormal within kDirectionTolerance. Returns it with an exactly orthonormal direction.
+/// direction is orthonormal within kDirectionTolerance (base/rotation.h). Returns it with an exactly orthonormal
+/// direction.
 ImageGeometry checked_geometry(const std::filesystem::path& path, const ImageGeometry& geometry);
 
 }  // namespace anatomesh

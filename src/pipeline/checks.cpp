@@ -42,9 +42,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Lengths beyond these lose the shape of tetrahedra to rounding.
 constexpr double kMinSpacing = 1e-6, kMaxSpacing = 1e6, kFarthest = 1e8;
 
-// The directions as columns must be orthonormal to this.
-constexpr double kRotationTolerance = 1e-4;
-
 void require_label(const TissueImage& tissues, Label label, const char* option) {
   if (label != 0 && std::binary_search(tissues.labels.begin(), tissues.labels.end(), label)) return;
   throw InvalidOption(std::string(option) + " names label " + std::to_string(label) +
@@ -67,10 +64,6 @@ double interface_area_mm2(const TissueImage& image) {
            static_cast<double>(faces[2]) * s.x * s.y;
   });
 }
-
-}  // namespace
-
-namespace {
 
 void require_ordered_sizes(const LatticeOptions& l) {
   if (l.min_size_mm <= l.bcc_size_mm) return;
@@ -126,7 +119,7 @@ void check_image(const LabelImage& image) {
                        " voxels; the numbers must be equal");
   }
   if (voxels > 4e9) throw InvalidInput("the image has " + text(voxels) + " voxels; at most 4e9 are possible");
-  if (const double defect = deviation_from_orthonormal(image.direction); !(defect <= kRotationTolerance)) {
+  if (const double defect = deviation_from_orthonormal(image.direction); !(defect <= kDirectionTolerance)) {
     throw InvalidInput("the direction matrix is off a rotation by " + text(defect) +
                        "; its columns must be orthogonal unit vectors");
   }

@@ -105,13 +105,17 @@ std::vector<TissueOutcome> describe_tissues(const TissueImage& image, const Latt
   return outcomes;
 }
 
+// "label 3 (1 voxel)"
+std::string with_voxels(Label label, std::uint64_t voxels) {
+  return "label " + std::to_string(label) + " (" + std::to_string(voxels) + (voxels == 1 ? " voxel)" : " voxels)");
+}
+
 std::vector<std::string> describe_losses(const std::vector<TissueOutcome>& tissues) {
   std::vector<std::string> warnings;
   for (const TissueOutcome& tissue : tissues) {
     if (tissue.tets > 0) continue;
-    warnings.push_back("label " + std::to_string(tissue.label) + " (" + std::to_string(tissue.voxels) +
-                       (tissue.voxels == 1 ? " voxel" : " voxels") +
-                       ") is too small to be represented and is not in the mesh; a smaller bcc_size may help");
+    warnings.push_back(with_voxels(tissue.label, tissue.voxels) +
+                       " is too small to be represented and is not in the mesh; a smaller bcc_size may help");
   }
   return warnings;
 }
@@ -129,8 +133,7 @@ void describe_shrinkage(const TissueMesh& mesh, const TissueImage& image, std::v
   for (std::size_t t = 1; t < volume_mm3.size(); ++t) {
     const double off = volume_mm3[t] / (static_cast<double>(image.counts[t]) * s.x * s.y * s.z) - 1;
     if (volume_mm3[t] == 0 || std::abs(off) <= kMuch) continue;
-    warnings.push_back("label " + std::to_string(image.labels[t]) + " (" + std::to_string(image.counts[t]) +
-                       (image.counts[t] == 1 ? " voxel" : " voxels") + ") has " +
+    warnings.push_back(with_voxels(image.labels[t], image.counts[t]) + " has " +
                        std::to_string(static_cast<int>(std::round(100 * (1 + off)))) +
                        " % of its volume in the mesh: it is thin for this lattice; a smaller bcc_size may help");
   }
