@@ -138,6 +138,7 @@ void to_json(Json& json, const Assessment& v) {
 }
 
 NLOHMANN_JSON_SERIALIZE_ENUM(Frame, {{Frame::lps, "lps"}, {Frame::ras, "ras"}})
+NLOHMANN_JSON_SERIALIZE_ENUM(FidelityStage, {{FidelityStage::lattice, "lattice"}, {FidelityStage::final, "final"}})
 NLOHMANN_JSON_SERIALIZE_ENUM(NonConnectivity, {{NonConnectivity::vertex, "vertex"},
                                                {NonConnectivity::edge, "edge"},
                                                {NonConnectivity::face, "face"},
@@ -148,7 +149,10 @@ void to_json(Json& json, const Material& v) {
 }
 
 void to_json(Json& json, const LatticeOptions& v) {
-  json = {{"bcc_size_mm", v.bcc_size_mm}, {"min_size_mm", v.min_size_mm}, {"fidelity", v.fidelity}};
+  json = {{"bcc_size_mm", v.bcc_size_mm},
+          {"min_size_mm", v.min_size_mm},
+          {"fidelity", v.fidelity},
+          {"fidelity_stage", v.fidelity_stage}};
   json["fidelity_label"] = Json::array();
   for (const auto& [label, fidelity] : v.fidelity_label)
     json["fidelity_label"].push_back({{"label", label}, {"fidelity", fidelity}});
@@ -180,8 +184,8 @@ void to_json(Json& json, const AssessOptions& v) {
 }
 
 void to_json(Json& json, const TissueOutcome& v) {
-  json = {{"label", v.label},       {"voxels", v.voxels},         {"tets", v.tets},
-          {"fidelity", v.fidelity}, {"lattice_f1", v.lattice_f1}, {"lattice_f2", v.lattice_f2}};
+  json = {{"label", v.label},           {"voxels", v.voxels},         {"tets", v.tets}, {"fidelity", v.fidelity},
+          {"lattice_f1", v.lattice_f1}, {"lattice_f2", v.lattice_f2}, {"f1", v.f1},     {"f2", v.f2}};
 }
 
 void to_json(Json& json, const StageTime& v) { json = {{"stage", v.stage}, {"seconds", v.seconds}}; }

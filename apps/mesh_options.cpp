@@ -127,9 +127,15 @@ void add_lattice_options(CLI::App& command, LatticeOptions& lattice) {
   add_number(command, "--bcc-size", "MM", "spacing of the coarsest lattice [8 times the mean voxel spacing]",
              lattice.bcc_size_mm);
   add_number(command, "--min-size", "MM",
-             "smallest lattice spacing that fidelity may ask for [a quarter of --bcc-size]", lattice.min_size_mm);
+             "smallest lattice spacing that fidelity may ask for [an eighth of --bcc-size, a quarter with "
+             "--fidelity-stage lattice]",
+             lattice.min_size_mm);
   add_number(command, "--fidelity", "F", "fidelity that each tissue is refined for, 0 < F <= 1 [0.95]",
              lattice.fidelity);
+  add_choice<FidelityStage>(command, "--fidelity-stage",
+                            "judge fidelity on the final mesh, or on the undeformed lattice as the paper does [final]",
+                            {{"final", FidelityStage::final}, {"lattice", FidelityStage::lattice}},
+                            lattice.fidelity_stage);
   add_labelled(command, "--fidelity-label", "LABEL=F", "fidelity of one tissue; may be repeated",
                [&lattice](std::optional<Label> label, double value) {
                  if (!label) throw InvalidOption("write it as LABEL=F, e.g. 3=0.99");

@@ -18,13 +18,19 @@ struct Material {
   double poisson_ratio = 0.45;     ///< >= 0, < 0.5
 };
 
+/// Where a tissue's fidelity is judged: on the undeformed lattice, as in the paper, or on the final mesh, which takes
+/// far fewer elements for the same F.
+enum class FidelityStage { lattice, final };
+
 /// Stage "lattice": the body-centred cubic lattice and its refinement.
 struct LatticeOptions {
   double bcc_size_mm = 0;  ///< spacing of the coarsest lattice, > 0; 0: 8 times the mean voxel spacing
-  /// A tissue thinner than the smallest size (0.15 short of its fidelity there) gets half of it.
-  double min_size_mm = 0;  ///< smallest lattice spacing that fidelity may ask for, > 0; 0: a quarter of bcc_size
-  double fidelity = 0.95;  ///< 0 < F <= 1: F1 and F2 that each tissue is refined for
+  /// Smallest lattice spacing that fidelity may ask for, > 0; 0: an eighth of bcc_size, a quarter for a fidelity on the
+  /// lattice. There a tissue that is still 0.15 short of its fidelity gets half of it.
+  double min_size_mm = 0;
+  double fidelity = 0.95;                  ///< 0 < F <= 1: F1 and F2 that each tissue is refined for
   std::map<Label, double> fidelity_label;  ///< F of single tissues, in place of the above
+  FidelityStage fidelity_stage = FidelityStage::final;
 };
 
 /// Stage "deform": registration onto the boundary, angle guard, settling.

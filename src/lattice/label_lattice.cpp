@@ -89,9 +89,9 @@ class LabelLattice::Impl {
   bool refine_until_faithful(const Stage& stage);
   std::vector<TetRef> leaves_to_mend(const FidelityGap& gap) const;
   LabelledLattice extract(const Stage& stage) const;
-  void raise_targets(const std::vector<LatticeFidelity>& reached);
+  void raise_targets(const std::vector<Fidelity>& reached);
   void collect_leaves();
-  std::vector<LatticeFidelity> inherited_fidelity() const;
+  std::vector<Fidelity> inherited_fidelity() const;
   std::vector<Demand> demands() const;
   bool wants_refinement(TetRef leaf, const std::vector<Demand>& demands) const;
   template <class Visit>
@@ -132,8 +132,8 @@ void LabelLattice::Impl::collect_leaves() {
 }
 
 // Voxels of the pure tetrahedra that handed their label down without counting.
-std::vector<LatticeFidelity> LabelLattice::Impl::inherited_fidelity() const {
-  std::vector<LatticeFidelity> fidelity(image_.labels.size());
+std::vector<Fidelity> LabelLattice::Impl::inherited_fidelity() const {
+  std::vector<Fidelity> fidelity(image_.labels.size());
   for (std::size_t t = 0; t < fidelity.size(); ++t) fidelity[t].voxels = image_.counts[t];
   for (int level = 0; level < lattice_.max_level(); ++level) {
     for (std::uint32_t slot = 0; slot < lattice_.slot_count(level); ++slot) {
@@ -157,7 +157,7 @@ constexpr double kFarOff = 0.25;
 }  // namespace
 
 std::vector<Demand> LabelLattice::Impl::demands() const {
-  std::vector<LatticeFidelity> fidelity = inherited_fidelity();
+  std::vector<Fidelity> fidelity = inherited_fidelity();
   std::vector<Demand> demands(fidelity.size(), {0, true, false});
   std::vector<double> volume_mm3(fidelity.size(), 0);
   for (const VotedLeaf& leaf : leaves_) {
@@ -172,7 +172,7 @@ std::vector<Demand> LabelLattice::Impl::demands() const {
   }
   demands[0].absent = false;
   for (std::size_t t = 1; t < demands.size(); ++t) {
-    const LatticeFidelity& f = fidelity[t];
+    const Fidelity& f = fidelity[t];
     if (f.f1() < target_[t] || f.f2() < target_[t]) demands[t].level_limit = plan_.levels;
     if (std::min(f.f1(), f.f2()) < plan_.fidelity[t] - kFarShort)
       demands[t].level_limit = std::min(plan_.levels + 1, lattice_.max_level());
@@ -223,7 +223,7 @@ bool LabelLattice::Impl::refine_until_faithful(const Stage& stage) {
 }
 
 // What the removal of label noise took from a tissue is asked for on top.
-void LabelLattice::Impl::raise_targets(const std::vector<LatticeFidelity>& reached) {
+void LabelLattice::Impl::raise_targets(const std::vector<Fidelity>& reached) {
   constexpr double kMargin = 0.01;
   for (std::size_t t = 1; t < target_.size(); ++t) {
     const double lacking = plan_.fidelity[t] - std::min(reached[t].f1(), reached[t].f2());

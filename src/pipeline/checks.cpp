@@ -129,7 +129,9 @@ Options with_sizes_filled_in(const Options& options, const LabelImage& image) {
   Options filled = options;
   const Vec3 s = image.spacing_mm;
   if (filled.lattice.bcc_size_mm == 0) filled.lattice.bcc_size_mm = 8 * (s.x + s.y + s.z) / 3;
-  if (filled.lattice.min_size_mm == 0) filled.lattice.min_size_mm = filled.lattice.bcc_size_mm / 4;
+  if (filled.lattice.min_size_mm == 0)
+    filled.lattice.min_size_mm =
+        filled.lattice.bcc_size_mm / (filled.lattice.fidelity_stage == FidelityStage::final ? 8 : 4);
   require_ordered_sizes(filled.lattice);
   return filled;
 }
@@ -146,7 +148,8 @@ void check_memory(const Options& options, const LabelImage& image, const TissueI
   // The coarsest lattice covers the whole crop.
   constexpr double kTetsPerSquare = 12, kBytesPerTet = 700, kBytesPerVoxel = 6, kBytesPerCell = 1200;
   constexpr double kGib = 1024.0 * 1024 * 1024;
-  const double h = options.lattice.min_size_mm;
+  // A fidelity of the final mesh takes its smallest size in a few places only.
+  const double h = options.lattice.min_size_mm * (options.lattice.fidelity_stage == FidelityStage::final ? 2 : 1);
   const double tets = kTetsPerSquare * interface_area_mm2(tissues) / (h * h);
   double cells = 1;
   for (std::size_t a = 0; a < 3; ++a)
