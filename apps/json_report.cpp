@@ -149,10 +149,12 @@ void to_json(Json& json, const Material& v) {
 }
 
 void to_json(Json& json, const LatticeOptions& v) {
-  json = {{"bcc_size_mm", v.bcc_size_mm},
-          {"min_size_mm", v.min_size_mm},
-          {"fidelity", v.fidelity},
-          {"fidelity_stage", v.fidelity_stage}};
+  json = {{"bcc_size_mm", v.bcc_size_mm},   {"min_size_mm", v.min_size_mm},
+          {"fidelity", v.fidelity},         {"fidelity_stage", v.fidelity_stage},
+          {"max_elements", v.max_elements}, {"elements_across", v.elements_across},
+          {"drop_islands", v.drop_islands}, {"allow_non_manifold", v.allow_non_manifold}};
+  json["size_label"] = Json::array();
+  for (const auto& [label, size] : v.size_label) json["size_label"].push_back({{"label", label}, {"size_mm", size}});
   json["fidelity_label"] = Json::array();
   for (const auto& [label, fidelity] : v.fidelity_label)
     json["fidelity_label"].push_back({{"label", label}, {"fidelity", fidelity}});
@@ -161,7 +163,8 @@ void to_json(Json& json, const LatticeOptions& v) {
 void to_json(Json& json, const DeformOptions& v) {
   json = {{"non_connectivity", v.non_connectivity}, {"iterations", v.iterations},
           {"min_dihedral_deg", v.min_dihedral_deg}, {"max_dihedral_deg", v.max_dihedral_deg},
-          {"min_mean_ratio", v.min_mean_ratio},     {"default_material", v.default_material}};
+          {"min_mean_ratio", v.min_mean_ratio},     {"gradation", v.gradation},
+          {"default_material", v.default_material}};
   json["material"] = Json::array();
   for (const auto& [label, material] : v.material) {
     Json entry = {{"label", label}};

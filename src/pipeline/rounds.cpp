@@ -15,6 +15,8 @@ namespace {
 constexpr double kFirstShare = 0.75;
 // Each round mends most of what is wrong. What is left after these is not to be had.
 constexpr int kMaxRounds = 16;
+// Of the progress.
+constexpr double kLatticeShare = 0.2;
 
 bool holds(const std::vector<Fidelity>& reached, const std::vector<double>& wanted) {
   for (std::size_t t = 1; t < reached.size(); ++t) {
@@ -39,7 +41,7 @@ class Rounds {
       for (double& f : first_plan_.fidelity) f *= kFirstShare;
     }
     LabelLattice builder(image_, first_plan_);
-    LabelledLattice lattice = builder.build(stage_.part("lattice", 0, 0.2));
+    LabelledLattice lattice = builder.build(stage_.part("lattice", 0, kLatticeShare));
     stage_done_("lattice");
     for (int round = 0;; ++round) {
       const Stage stage = part(round);
@@ -48,7 +50,11 @@ class Rounds {
       MeshFidelity reached;
       std::optional<LabelledLattice> finer;
       for (const bool finished : {false, true}) {
-        finished ? deformer_.finish(mesh, stage) : deformer_.approach(mesh, stage);
+        if (finished) {
+          deformer_.finish(mesh, stage.part("deform", 0.5, 1));
+        } else {
+          deformer_.approach(mesh, stage.part("deform", 0, 0.5));
+        }
         reached = measure_fidelity(mesh, image_, stage);
         stage_done_("deform");
         if (may_refine && !holds(reached.tissues, wanted_)) {
@@ -65,7 +71,8 @@ class Rounds {
  private:
   // The rounds share the progress bar; how many there will be is not known.
   Stage part(int round) const {
-    return stage_.part("deform", 1 - 0.8 * std::pow(0.75, round), 1 - 0.8 * std::pow(0.75, round + 1));
+    const auto begin = [](int r) { return kLatticeShare + (1 - kLatticeShare) * (1 - std::pow(0.75, r)); };
+    return stage_.part("deform", begin(round), begin(round + 1));
   }
 
   const TissueImage& image_;
