@@ -2,7 +2,11 @@
 
 #include "boundary/edge_points.h"
 #include "boundary/label_field.h"
+#include <cstdio>
+#include <cstdlib>
+#include <chrono>
 #include "deform/angle_guard.h"
+#include "deform/coarsen.h"
 #include "deform/register_mesh.h"
 #include "deform/settle.h"
 #include "deform/split_bridges.h"
@@ -35,6 +39,21 @@ void deform(TissueMesh& mesh, const TissueImage& image, const DeformOptions& opt
   register_mesh(mesh, topology, guard, field, targets, materials_of(image, options), options.iterations,
                 stage.part("register", 0.1, 0.7));
   settle(mesh, topology, guard, field, kSettleSweeps, stage.part("settle", 0.7, 1.0));
+  const auto env = [](const char* n, double d) { const char* s = std::getenv(n); return s ? std::atof(s) : d; };
+  MeshEditor editor(mesh);
+  CoarsenLimits limits;
+  limits.bounds = ShapeBounds::from_degrees(options.min_dihedral_deg + env("DLO", 0), options.max_dihedral_deg - env("DHI", 0), options.min_mean_ratio);
+  limits.max_turn_cos = std::cos(env("TURN", 25) * 3.14159265 / 180);
+  const int rounds = static_cast<int>(env("ROUNDS", 8));
+  for (int r = 0; r < rounds; ++r) {
+    limits.surface_tolerance_mm = env("TOL", 0) * std::min(1.0, (r + 1) / env("RAMP", 1));
+    auto t0 = std::chrono::steady_clock::now();
+    std::size_t before = editor.tissue_tets();
+    std::size_t n = coarsen_round(editor, field, limits, stage);
+    std::fprintf(stderr, "round %d gone %zu tets %zu -> %zu  %.2f s\n", r, n, before, editor.tissue_tets(),
+                 std::chrono::duration<double>(std::chrono::steady_clock::now() - t0).count());
+  }
+  mesh = editor.result();
 }
 
 }  // namespace anatomesh
