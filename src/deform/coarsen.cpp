@@ -15,8 +15,10 @@ namespace {
 
 using Local = VertexStar::Local;
 
-// A set of tissues out of those at the vertex that is to go: at most three.
+// A set of tissues out of those at the vertex that is to go, at most three; all others are one more.
 using TissueSet = std::uint8_t;
+
+constexpr double kMargin = 1e-9;  // of slack, above its rounding errors
 
 class Coarsener {
  public:
@@ -61,10 +63,7 @@ class Coarsener {
 };
 
 TissueSet Coarsener::set_of(TissueId tissue) const {
-  for (std::size_t n = 0; n < tissues_.size(); ++n) {
-    if (tissues_[n] == tissue) return static_cast<TissueSet>(1u << n);
-  }
-  return 0;
+  return static_cast<TissueSet>(1u << (std::ranges::find(tissues_, tissue) - tissues_.begin()));
 }
 
 void Coarsener::list_tissues() {
@@ -132,7 +131,9 @@ double Coarsener::worst_slack(Local w, double enough) const {
   return worst;
 }
 
-// Link(v) and link(w) may have in common what is in link(vw) only, in the mesh and in the closure of every tissue.
+// Link(v) and link(w) may have in common what is in link(vw) only. Of two edges (or faces) that become one, the tissues
+// at one must be among those at the other, and be those at the face (or tetrahedron) between them: otherwise interfaces
+// would meet that did not, or vanish.
 bool Coarsener::keeps_link(Local w) {
   const std::size_t count = star_.vertices().size();
   at_other_edge_.assign(count, 0);
@@ -159,6 +160,7 @@ bool Coarsener::keeps_link(Local w) {
   for (Local x = 1; x < count; ++x) {
     if (x == w || !is_near_other_[x]) continue;
     if (!is_in_ring_[x] || (at_edge_[x] & at_other_edge_[x]) != at_face_[x]) return false;
+    if (at_face_[x] != at_edge_[x] && at_face_[x] != at_other_edge_[x]) return false;
   }
   return keeps_edge_link(w) && (tissues_.size() == 1 || keeps_face_link(w));
 }
@@ -189,7 +191,7 @@ bool Coarsener::keeps_edge_link(Local w) const {
   return true;
 }
 
-// Tissue of the tetrahedron at the face wxy that does not have the centre; that of the centre's where there is none.
+// Tissue of the tetrahedron at the face wxy that does not have the centre; 0 where there is none.
 TissueId Coarsener::tissue_across(Local w, Local x, Local y) const {
   const auto& vertices = star_.vertices();
   for (const TetId t : mesh_.tets_at(vertices[w])) {
@@ -200,7 +202,7 @@ TissueId Coarsener::tissue_across(Local w, Local x, Local y) const {
   return 0;
 }
 
-// A tetrahedron that dies must not be all there is between two others of one tissue.
+// A tetrahedron that dies must not be all there is between two interfaces.
 bool Coarsener::keeps_face_link(Local w) const {
   for (const auto& dying : star_.tets()) {
     if (!dying.has(w)) continue;
@@ -209,7 +211,7 @@ bool Coarsener::keeps_face_link(Local w) const {
     const auto beside = std::ranges::find_if(
         star_.tets(), [&](const auto& tet) { return !tet.has(w) && tet.has(xy[0]) && tet.has(xy[1]); });
     if (beside == star_.tets().end() || beside->tissue == dying.tissue) continue;
-    if (tissue_across(w, xy[0], xy[1]) == beside->tissue) return false;
+    if (tissue_across(w, xy[0], xy[1]) != dying.tissue) return false;
   }
   return true;
 }
@@ -262,7 +264,7 @@ bool Coarsener::visit(VertexId v) {
     c.slack = keeps_sizes(c.vertex) && (!is_on_interface || keeps_turns(c.vertex)) ? worst_slack(c.vertex, 0) : -2;
   std::ranges::stable_sort(candidates_, std::ranges::greater(), &Candidate::slack);
   for (const Candidate& c : candidates_) {
-    if (c.slack < 0) return false;
+    if (c.slack < kMargin) return false;
     if ((is_on_interface && !stays_near(c.vertex)) || !keeps_link(c.vertex)) continue;
     mesh_.collapse(v, star_.vertices()[c.vertex]);
     return true;
@@ -272,17 +274,26 @@ bool Coarsener::visit(VertexId v) {
 
 }  // namespace
 
-std::size_t coarsen_round(MeshEditor& mesh, const LabelField& field, const CoarsenLimits& limits, const Stage& stage) {
+std::size_t coarsen(MeshEditor& mesh, const LabelField& field, const CoarsenLimits& limits, int rounds,
+                    const Stage& stage) {
   constexpr VertexId kPerCheck = 1 << 14;
+  constexpr std::size_t kFew = 2000;  // a round that finds one in so many is the last
   Coarsener coarsener(mesh, field, limits);
-  std::vector<char> is_touched(mesh.vertex_count());
+  std::vector<char> is_due(mesh.vertex_count(), 1), is_touched(mesh.vertex_count());
   std::size_t gone = 0;
-  for (VertexId v = 0; v < mesh.vertex_count(); ++v) {
-    if (v % kPerCheck == 0) stage.check_cancelled();
-    if (mesh.tissue_tets() <= limits.target_tets) break;
-    if (is_touched[v] || !coarsener.visit(v)) continue;
-    for (const VertexId w : coarsener.touched()) is_touched[w] = 1;
-    ++gone;
+  for (int round = 0; round < rounds; ++round) {
+    const std::size_t before = gone;
+    std::ranges::fill(is_touched, 0);
+    for (VertexId v = 0; v < mesh.vertex_count(); ++v) {
+      if (v % kPerCheck == 0) stage.check_cancelled();
+      if (!is_due[v] || is_touched[v]) continue;
+      if (mesh.tissue_tets() <= limits.target_tets) return gone;
+      is_due[v] = 0;
+      if (!coarsener.visit(v)) continue;
+      ++gone;
+      for (const VertexId w : coarsener.touched()) is_due[w] = is_touched[w] = 1;
+    }
+    if (gone - before <= mesh.vertex_count() / kFew) break;
   }
   return gone;
 }

@@ -25,8 +25,10 @@ struct CoarsenLimits {
 /// best, where that is inside the limits. Vertices inside a tissue go onto any neighbour, those on an interface along
 /// it, those on a line where three tissues meet along that line; where more meet they stay. A labelled link condition
 /// keeps the topology: every tissue's region, its surface, the interfaces and junctions stay what they are up to where
-/// they lie. Neighbours of a vertex that has gone are left alone until the next round. Returns how many have gone.
-/// Deterministic. Cost: about 3 us a vertex.
-std::size_t coarsen_round(MeshEditor& mesh, const LabelField& field, const CoarsenLimits& limits, const Stage& stage);
+/// they lie. Neighbours of a vertex that has gone are left alone until the next round; later rounds look at the
+/// neighbourhoods that have changed only. Ends after `rounds`, or when a round finds (almost) nothing. Returns how many
+/// vertices have gone. Deterministic. Cost: about 5 us a vertex. Throws Cancelled.
+std::size_t coarsen(MeshEditor& mesh, const LabelField& field, const CoarsenLimits& limits, int rounds,
+                    const Stage& stage);
 
 }  // namespace anatomesh

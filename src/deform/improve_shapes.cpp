@@ -96,7 +96,8 @@ bool ShapeImprover::remove_edge(VertexId a, VertexId b) {
 
 bool ShapeImprover::remove_face(TetId t, std::size_t opposite) {
   // Even permutations that begin with the opposite corner.
-  constexpr std::array<std::array<std::size_t, 4>, 4> kFrom = {{{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 3, 0, 1}, {3, 2, 1, 0}}};
+  constexpr std::array<std::array<std::size_t, 4>, 4> kFrom = {
+      {{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 3, 0, 1}, {3, 2, 1, 0}}};
   const Tet tet = mesh_.tet(t);
   const auto& order = kFrom[opposite];
   const VertexId a = tet[order[0]], x = tet[order[1]], y = tet[order[2]], z = tet[order[3]];
@@ -106,8 +107,7 @@ bool ShapeImprover::remove_face(TetId t, std::size_t opposite) {
     if (s != t && std::ranges::find(c, y) != c.end() && std::ranges::find(c, z) != c.end()) other = s;
   }
   if (other == t || mesh_.tissue(other) != mesh_.tissue(t)) return false;
-  const VertexId b =
-      *std::ranges::find_if(mesh_.tet(other), [&](VertexId v) { return v != x && v != y && v != z; });
+  const VertexId b = *std::ranges::find_if(mesh_.tet(other), [&](VertexId v) { return v != x && v != y && v != z; });
   const double before = std::min(slack_of(tet), slack_of(mesh_.tet(other))) + kGain;
   const std::array<Tet, 3> fresh = {{{a, x, y, b}, {a, y, z, b}, {a, z, x, b}}};
   for (const Tet& f : fresh) {
@@ -131,9 +131,20 @@ double ShapeImprover::worst_at(Vec3 p, double enough) const {
 
 // A search along fixed directions with steps that get smaller.
 bool ShapeImprover::move_vertex(VertexId v) {
-  constexpr std::array<Vec3, 14> kDirections = {{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1},
-      {.577, .577, .577}, {.577, .577, -.577}, {.577, -.577, .577}, {.577, -.577, -.577},
-      {-.577, .577, .577}, {-.577, .577, -.577}, {-.577, -.577, .577}, {-.577, -.577, -.577}}};
+  constexpr std::array<Vec3, 14> kDirections = {{{1, 0, 0},
+                                                 {-1, 0, 0},
+                                                 {0, 1, 0},
+                                                 {0, -1, 0},
+                                                 {0, 0, 1},
+                                                 {0, 0, -1},
+                                                 {.577, .577, .577},
+                                                 {.577, .577, -.577},
+                                                 {.577, -.577, .577},
+                                                 {.577, -.577, -.577},
+                                                 {-.577, .577, .577},
+                                                 {-.577, .577, -.577},
+                                                 {-.577, -.577, .577},
+                                                 {-.577, -.577, -.577}}};
   if (mesh_.tissues_at(v) != 1 || mesh_.is_outer(v)) return false;
   star_.gather(v);
   Vec3 at = star_.points()[0], mean;

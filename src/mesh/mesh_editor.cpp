@@ -1,7 +1,9 @@
 #include "mesh/mesh_editor.h"
 
 #include <algorithm>
+#include <iterator>
 
+#include "base/parallel.h"
 #include "mesh/adjacency.h"
 
 namespace anatomesh {
@@ -15,39 +17,40 @@ MeshEditor::MeshEditor(const TissueMesh& mesh) : mesh_(mesh) {
   }
   incident_ = std::move(lists.items);
   tissue_tets_ = static_cast<std::size_t>(std::ranges::count_if(mesh_.tissues, [](TissueId t) { return t != 0; }));
-  count_tissues();
-  mark_outer();
+  tissues_at_.resize(stars_.size());
+  is_outer_.resize(stars_.size());
+  parallel_for(stars_.size(), [&](std::size_t v) {
+    tissues_at_[v] = count_tissues(static_cast<VertexId>(v));
+    is_outer_[v] = lies_on_bare_face(static_cast<VertexId>(v));
+  });
 }
 
-void MeshEditor::count_tissues() {
-  tissues_at_.assign(stars_.size(), 0);
-  std::vector<TissueId> seen;
-  for (VertexId v = 0; v < stars_.size(); ++v) {
-    seen.clear();
-    for (const TetId t : tets_at(v)) {
-      if (std::ranges::find(seen, mesh_.tissues[t]) == seen.end()) seen.push_back(mesh_.tissues[t]);
-    }
-    tissues_at_[v] = static_cast<std::uint8_t>(std::min<std::size_t>(seen.size(), 255));
+std::uint8_t MeshEditor::count_tissues(VertexId v) const {
+  constexpr std::size_t kMany = 8;
+  std::array<TissueId, kMany> seen;
+  std::size_t count = 0;
+  for (const TetId t : tets_at(v)) {
+    const auto end = seen.begin() + count;
+    if (count < kMany && std::find(seen.begin(), end, mesh_.tissues[t]) == end) seen[count++] = mesh_.tissues[t];
   }
+  return static_cast<std::uint8_t>(count);
 }
 
 // A vertex inside has a ball of tetrahedra around it: each face at it is there twice.
-void MeshEditor::mark_outer() {
-  is_outer_.assign(stars_.size(), 0);
+bool MeshEditor::lies_on_bare_face(VertexId v) const {
   std::vector<std::array<VertexId, 2>> faces;
-  for (VertexId v = 0; v < stars_.size(); ++v) {
-    faces.clear();
-    for (const TetId t : tets_at(v)) {
-      std::array<VertexId, 3> others;
-      std::ranges::copy_if(mesh_.tets[t], others.begin(), [v](VertexId w) { return w != v; });
-      std::ranges::sort(others);
-      faces.insert(faces.end(), {{others[0], others[1]}, {others[0], others[2]}, {others[1], others[2]}});
-    }
-    std::ranges::sort(faces);
-    for (std::size_t f = 0; f < faces.size() && is_outer_[v] == 0; f += 2) {
-      if (f + 1 == faces.size() || faces[f] != faces[f + 1]) is_outer_[v] = 1;
-    }
+  faces.reserve(3 * tets_at(v).size());
+  for (const TetId t : tets_at(v)) {
+    std::array<VertexId, 3> others;
+    std::ranges::copy_if(mesh_.tets[t], others.begin(), [v](VertexId w) { return w != v; });
+    std::ranges::sort(others);
+    faces.insert(faces.end(), {{others[0], others[1]}, {others[0], others[2]}, {others[1], others[2]}});
   }
+  std::ranges::sort(faces);
+  for (std::size_t f = 0; f < faces.size(); f += 2) {
+    if (f + 1 == faces.size() || faces[f] != faces[f + 1]) return true;
+  }
+  return false;
 }
 
 TissueMesh MeshEditor::result() const {
@@ -120,10 +123,26 @@ void MeshEditor::replace(std::span<const TetId> old, std::span<const std::array<
   for (const auto& tet : fresh) add(tet, tissue);
 }
 
-VertexId MeshEditor::add_vertex(Vec3 p, int tissues_at) {
+VertexId MeshEditor::split(VertexId a, VertexId b, Vec3 at) {
+  std::vector<TetId> ring;
+  std::ranges::copy_if(tets_at(a), std::back_inserter(ring),
+                       [&](TetId t) { return std::ranges::find(mesh_.tets[t], b) != mesh_.tets[t].end(); });
+  const VertexId m = add_vertex(at);
+  for (const TetId t : ring) {
+    std::array<std::array<VertexId, 4>, 2> halves = {mesh_.tets[t], mesh_.tets[t]};
+    *std::ranges::find(halves[0], a) = m;
+    *std::ranges::find(halves[1], b) = m;
+    replace(std::array{t}, halves, mesh_.tissues[t]);
+  }
+  tissues_at_[m] = count_tissues(m);
+  is_outer_[m] = lies_on_bare_face(m);
+  return m;
+}
+
+VertexId MeshEditor::add_vertex(Vec3 p) {
   mesh_.points_mm.push_back(p);
   stars_.emplace_back();
-  tissues_at_.push_back(static_cast<std::uint8_t>(tissues_at));
+  tissues_at_.push_back(0);
   is_outer_.push_back(0);
   return static_cast<VertexId>(stars_.size() - 1);
 }

@@ -31,10 +31,8 @@ class MeshEditor {
   bool is_alive(TetId t) const { return mesh_.tets[t][0] != kDead; }
 
   /// Tetrahedra at v, in no particular order; none: v is dead. Invalid after the next change.
-  std::span<const TetId> tets_at(VertexId v) const {
-    return {incident_.data() + stars_[v].begin, stars_[v].count};
-  }
-  /// Number of different tissues at v, the cushion's included; 255: that many or more. It lies on an interface where
+  std::span<const TetId> tets_at(VertexId v) const { return {incident_.data() + stars_[v].begin, stars_[v].count}; }
+  /// Number of different tissues at v, the cushion's included; 8: that many or more. It lies on an interface where
   /// there are two, on a junction where there are more. Collapses, flips and splits that keep the tissues' surfaces as
   /// they are, up to where they lie, keep it for all vertices that remain.
   int tissues_at(VertexId v) const { return tissues_at_[v]; }
@@ -46,11 +44,11 @@ class MeshEditor {
   /// Merges v into w, which share an edge: the tetrahedra at that edge die, the others at v have w in its place.
   void collapse(VertexId v, VertexId w);
 
+  /// Cuts all tetrahedra at the edge ab in two at a new vertex on it. Returns that vertex.
+  VertexId split(VertexId a, VertexId b, Vec3 at);
+
   /// Replaces tetrahedra by others, all of one tissue.
   void replace(std::span<const TetId> old, std::span<const std::array<VertexId, 4>> fresh, TissueId tissue);
-
-  /// A new vertex, of no tetrahedron yet, where `tissues_at` tissues will meet.
-  VertexId add_vertex(Vec3 p, int tissues_at);
 
  private:
   static constexpr VertexId kDead = static_cast<VertexId>(-1);
@@ -59,8 +57,9 @@ class MeshEditor {
     std::uint32_t begin = 0, count = 0, capacity = 0;
   };
 
-  void count_tissues();
-  void mark_outer();
+  std::uint8_t count_tissues(VertexId v) const;
+  bool lies_on_bare_face(VertexId v) const;
+  VertexId add_vertex(Vec3 p);
   void attach(VertexId v, TetId t);
   void detach(VertexId v, TetId t);
   void kill(TetId t);
