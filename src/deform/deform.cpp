@@ -4,6 +4,7 @@
 
 #include "boundary/edge_points.h"
 #include "deform/angle_guard.h"
+#include "deform/improve.h"
 #include "deform/register_mesh.h"
 #include "deform/settle.h"
 #include "deform/split_bridges.h"
@@ -43,14 +44,15 @@ void Deformer::approach(TissueMesh& mesh, const Stage& stage) const {
   settle(mesh, topology, guard, field_, kFirstSettleSweeps, stage.part("settle", 0.7, 1.0));
 }
 
-void Deformer::finish(TissueMesh& mesh, const Stage& stage) const {
+void Deformer::finish(TissueMesh& mesh, const ImproveOptions& improvement, const Stage& stage) const {
   if (options_.iterations == 0) return;
   const MeshTopology topology = make_topology(mesh);
   const AngleGuard guard(mesh, topology, bounds_);
   if (options_.iterations > kFirstIterations)
     register_mesh(mesh, topology, guard, field_, targets_, materials_, options_.iterations - kFirstIterations,
                   stage.part("register", 0.1, 0.7));
-  settle(mesh, topology, guard, field_, kSettleSweeps, stage.part("settle", 0.7, 1.0));
+  settle(mesh, topology, guard, field_, kSettleSweeps, stage.part("settle", 0.7, 0.8));
+  improve(mesh, field_, bounds_, improvement, stage.part("improve", 0.8, 1.0));
 }
 
 }  // namespace anatomesh

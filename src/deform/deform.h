@@ -7,6 +7,7 @@
 #include "base/stage.h"
 #include "boundary/edge_points.h"
 #include "boundary/label_field.h"
+#include "deform/improve.h"
 #include "image/tissue_image.h"
 #include "mesh/tet_shape.h"
 #include "mesh/tissue_mesh.h"
@@ -26,8 +27,8 @@ class Deformer {
   /// The tissues' volumes and surfaces on the lattice stay as they are. Nothing for no iterations. Throws Cancelled.
   void approach(TissueMesh& mesh, const Stage& stage) const;
 
-  /// The other iterations, until the mesh stands still, and settling in full. Throws Cancelled.
-  void finish(TissueMesh& mesh, const Stage& stage) const;
+  /// The other iterations and settling in full, then fewer and better tetrahedra. Throws Cancelled.
+  void finish(TissueMesh& mesh, const ImproveOptions& improvement, const Stage& stage) const;
 
  private:
   const TissueImage& image_;

@@ -51,7 +51,7 @@ class Rounds {
       std::optional<LabelledLattice> finer;
       for (const bool finished : {false, true}) {
         if (finished) {
-          deformer_.finish(mesh, stage.part("deform", 0.5, 1));
+          deformer_.finish(mesh, {}, stage.part("deform", 0.5, 1));
         } else {
           deformer_.approach(mesh, stage.part("deform", 0, 0.5));
         }

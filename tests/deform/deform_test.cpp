@@ -19,7 +19,7 @@ namespace {
 void deform_quietly(TissueMesh& mesh, const TissueImage& image, const DeformOptions& options = {}) {
   const Deformer deformer(image, options, testing::quiet_stage());
   deformer.approach(mesh, testing::quiet_stage());
-  deformer.finish(mesh, testing::quiet_stage());
+  deformer.finish(mesh, {}, testing::quiet_stage());
 }
 
 void expect_sound(const TissueMesh& mesh, const DeformOptions& options) {
