@@ -1,7 +1,7 @@
 #include "deform/deform.h"
 
 #include "boundary/edge_points.h"
-#include "boundary/label_field.h"
+#include "boundary/surface_field.h"
 #include "deform/angle_guard.h"
 #include "deform/register_mesh.h"
 #include "deform/settle.h"
@@ -31,7 +31,7 @@ void deform(TissueMesh& mesh, const TissueImage& image, const DeformOptions& opt
   const AngleGuard guard(mesh, topology, bounds);
   const std::vector<EdgePoint> targets =
       thin_edge_points(find_edge_points(image, stage.cancel_token()), options.non_connectivity);
-  const LabelField field(image);
+  const SurfaceField field(image);
   register_mesh(mesh, topology, guard, field, targets, materials_of(image, options), options.iterations,
                 stage.part("register", 0.1, 0.7));
   settle(mesh, topology, guard, field, kSettleSweeps, stage.part("settle", 0.7, 1.0));
