@@ -1,5 +1,7 @@
 #include "deform/angle_guard.h"
 
+#include <algorithm>
+
 #include "base/parallel.h"
 
 namespace anatomesh {
@@ -43,6 +45,38 @@ double AngleGuard::advance(VertexId v, Vec3 p, int halvings) const {
   return 0;
 }
 
+double AngleGuard::advance_best(VertexId v, Vec3 goal, const Mat3& metric, double reach) const {
+  constexpr int rounds = 4;
+  const auto cost = [&](Vec3 at) {
+    const Vec3 off = at - goal;
+    return dot(off, metric * off);
+  };
+  const Vec3 from = mesh_.points_mm[v];
+  double share = advance(v, goal, 3);
+  if (share == 1) return 1;
+  Vec3 best = mesh_.points_mm[v];
+  double least = cost(best);
+  double radius = reach;
+  static constexpr std::array<Vec3, 14> kDirections = {
+      Vec3{1, 0, 0}, {-1, 0, 0},    {0, 1, 0},     {0, -1, 0},     {0, 0, 1},      {0, 0, -1},     {.6, .6, .6},
+      {-.6, .6, .6}, {.6, -.6, .6}, {.6, .6, -.6}, {-.6, -.6, .6}, {-.6, .6, -.6}, {.6, -.6, -.6}, {-.6, -.6, -.6}};
+  for (int round = 0; round < rounds; ++round) {
+    bool moved = false;
+    const Vec3 centre = best;
+    for (const Vec3 d : kDirections) {
+      const Vec3 at = centre + radius * d;
+      const double c = cost(at);
+      if (c >= least || !fits(v, at)) continue;
+      best = at;
+      least = c;
+      moved = true;
+    }
+    if (!moved) radius *= 0.5;
+  }
+  mesh_.points_mm[v] = best;
+  return best == from ? 0 : 0.5;
+}
+
 double AngleGuard::slack(VertexId v, Vec3 p, double enough) const {
   double worst = 1;
   for (const TetId t : topology_.tets_of_vertex[v]) {
@@ -78,20 +112,48 @@ void advance_all(TissueMesh& mesh, const MeshTopology& topology, const AngleGuar
 }
 
 void relax_interior(TissueMesh& mesh, const MeshTopology& topology, const AngleGuard& guard, const Stage& stage) {
+  constexpr double kEnough = 0.15;
+  constexpr int kRounds = 6;
   for_each_vertex_by_colour(topology, stage, [&](VertexId v) {
     if (topology.on_interface(v) || topology.outside(v)) return;
+    const Vec3 from = mesh.points_mm[v];
     Vec3 mean;
-    for (const VertexId w : topology.neighbours[v]) mean += mesh.points_mm[w];
+    double edge = 0;
+    for (const VertexId w : topology.neighbours[v]) mean += mesh.points_mm[w], edge += norm(mesh.points_mm[w] - from);
     mean = (1.0 / static_cast<double>(topology.neighbours[v].size())) * mean;
-    const Vec3 from = mesh.points_mm[v], edge = mesh.points_mm[topology.neighbours[v][0]] - from;
-    if (norm_squared(mean - from) < kStill * kStill * norm_squared(edge)) return;
-    const double before = std::max(0.0, guard.slack(v, from, -1));
-    for (const double share : {1.0, 0.3}) {
-      const Vec3 at = from + share * (mean - from);
-      if (guard.slack(v, at, before) < before) continue;
-      mesh.points_mm[v] = at;
-      return;
+    edge /= static_cast<double>(topology.neighbours[v].size());
+    double before = guard.slack(v, from, -1);
+    if (before < 0) return;
+    Vec3 best = from;
+    if (norm_squared(mean - from) >= kStill * kStill * edge * edge)
+      for (const double share : {1.0, 0.3}) {
+        const Vec3 at = from + share * (mean - from);
+        const double s = guard.slack(v, at, before);
+        if (s < before) continue;
+        best = at;
+        before = s;
+        break;
+      }
+    if (before < kEnough) {
+      double radius = 0.15 * edge;
+      static constexpr std::array<Vec3, 8> kDirections = {Vec3{.6, .6, .6}, {-.6, -.6, .6},  {-.6, .6, -.6},
+                                                          {.6, -.6, -.6},   {-.6, -.6, -.6}, {.6, .6, -.6},
+                                                          {.6, -.6, .6},    {-.6, .6, .6}};
+      for (int round = 0; round < kRounds && before < kEnough; ++round) {
+        bool moved = false;
+        const Vec3 centre = best;
+        for (const Vec3 d : kDirections) {
+          const Vec3 at = centre + radius * d;
+          const double s = guard.slack(v, at, before);
+          if (s <= before) continue;
+          before = s;
+          best = at;
+          moved = true;
+        }
+        if (!moved) radius *= 0.5;
+      }
     }
+    mesh.points_mm[v] = best;
   });
 }
 

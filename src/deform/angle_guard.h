@@ -27,6 +27,8 @@ class AngleGuard {
   /// the share gone, 0 if none. Neighbours of v must not move at the same time.
   double advance(VertexId v, Vec3 p, int halvings) const;
 
+  double advance_best(VertexId v, Vec3 goal, const Mat3& metric, double reach) const;
+
   /// How far the worst tetrahedron at v is from its bounds when v is at p; negative outside of them, 1 at
   /// the most. Cushion tetrahedra count only when they turn over. Stops at the first that is below `enough`.
   double slack(VertexId v, Vec3 p, double enough) const;

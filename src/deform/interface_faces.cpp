@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "base/parallel.h"
+#include "base/vec.h"
 
 namespace anatomesh {
 namespace {
@@ -34,14 +35,32 @@ void append_sides(const TissueMesh& mesh, const MeshTopology& topology, VertexId
   }
 }
 
-void append_faces(const TissueMesh& mesh, std::vector<Side>& sides, std::vector<InterfaceFace>& faces) {
+// The border plane that the tetrahedron is farthest beyond.
+std::optional<BorderPlane> border_crossed(const TissueMesh& mesh, TetId t, const TissueImage& image) {
+  if (mesh.tissues[t] != 0) return {};
+  Vec3 centre;
+  for (const VertexId v : mesh.tets[t]) centre += 0.25 * mesh.points_mm[v];
+  std::optional<BorderPlane> crossed;
+  double farthest = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double low = image.low_border_mm(axis), high = image.high_border_mm(axis);
+    const double beyond = std::max(low - centre[axis], centre[axis] - high);
+    if (beyond <= farthest) continue;
+    farthest = beyond;
+    crossed = BorderPlane{axis, centre[axis] < low ? low : high};
+  }
+  return crossed;
+}
+
+void append_faces(const TissueMesh& mesh, const TissueImage& image, std::vector<Side>& sides,
+                  std::vector<InterfaceFace>& faces) {
   std::ranges::sort(sides, {}, [](const Side& s) { return std::tuple(s.middle, s.last, s.tet); });
   for (std::size_t n = 0; n + 1 < sides.size(); ++n) {
     const Side &a = sides[n], &b = sides[n + 1];
     if (a.middle != b.middle || a.last != b.last) continue;
     const TissueId of_a = mesh.tissues[a.tet], of_b = mesh.tissues[b.tet];
-    if (of_a < of_b) faces.push_back({b.inward, of_a, of_b});
-    if (of_b < of_a) faces.push_back({a.inward, of_b, of_a});
+    if (of_a < of_b) faces.push_back({b.inward, of_a, of_b, border_crossed(mesh, a.tet, image)});
+    if (of_b < of_a) faces.push_back({a.inward, of_b, of_a, border_crossed(mesh, b.tet, image)});
   }
 }
 
@@ -62,7 +81,7 @@ VertexLists<std::uint32_t> faces_of_vertices(std::size_t vertex_count, const std
 
 }  // namespace
 
-InterfaceFaces find_interface_faces(const TissueMesh& mesh, const MeshTopology& topology) {
+InterfaceFaces find_interface_faces(const TissueMesh& mesh, const MeshTopology& topology, const TissueImage& image) {
   constexpr std::size_t kGrain = 4096;
   const std::size_t vertices = mesh.points_mm.size();
   std::vector<std::vector<InterfaceFace>> blocks(vertices / kGrain + 1);
@@ -72,7 +91,7 @@ InterfaceFaces find_interface_faces(const TissueMesh& mesh, const MeshTopology& 
       if (!topology.on_interface(static_cast<VertexId>(v))) continue;
       sides.clear();
       append_sides(mesh, topology, static_cast<VertexId>(v), sides);
-      append_faces(mesh, sides, blocks[begin / kGrain]);
+      append_faces(mesh, image, sides, blocks[begin / kGrain]);
     }
   });
   InterfaceFaces found;

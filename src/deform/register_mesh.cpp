@@ -5,7 +5,7 @@
 #include "base/parallel.h"
 #include "base/vec.h"
 #include "boundary/matching.h"
-#include "deform/boundary_step.h"
+#include "deform/sides.h"
 #include "fem/block_matrix.h"
 #include "fem/solver.h"
 

@@ -2,160 +2,240 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
+#include <optional>
+#include <vector>
 
 #include "base/parallel.h"
 #include "base/vec.h"
-#include "deform/boundary_step.h"
 #include "deform/interface_faces.h"
 
 namespace anatomesh {
 namespace {
 
-double env(const char* name, double other) {
-  const char* s = std::getenv(name);
-  return s ? std::atof(s) : other;
-}
-
-// Solves the symmetric positive definite system A x = b.
-Vec3 solve_symmetric(const Mat3& a, Vec3 b) {
-  const Vec3 c0 = {a[0][0], a[1][0], a[2][0]}, c1 = {a[0][1], a[1][1], a[2][1]}, c2 = {a[0][2], a[1][2], a[2][2]};
-  const double det = dot(c0, cross(c1, c2));
-  return (1 / det) * Vec3{dot(b, cross(c1, c2)), dot(c0, cross(b, c2)), dot(c0, cross(c1, b))};
-}
+// What a vertex minimises is a sum of squared distances: of the faces around it from the boundary (at their centroids),
+// of itself from the boundary, of the other ends of those faces from their tangent planes, of itself from where it
+// would be evenly spaced. The weights of these parts:
+constexpr double kOfFaces = 0.75;
+constexpr double kOfVertex = 0.25;
+constexpr double kOfNormals = 0.3;
+constexpr double kOfSpacing = 0.3;
+// Faces on the image's border lie there exactly.
+constexpr double kOfBorder = 1e4;
+// Share of the way to the mean of the neighbours in a sweep.
+constexpr double kRelaxation = 0.5;
 
 // A ball of this many voxels just keeps its place in the smoothed field.
 constexpr std::uint64_t kTinyVoxels = 8;
 
-bool touches_tiny_tissue(std::span<const TissueId> tissues, const TissueImage& image) {
-  return std::any_of(tissues.begin(), tissues.end(), [&](TissueId t) { return image.counts[t] < kTinyVoxels; });
-}
+// A sum of squared distances to planes, as a function of a displacement.
+struct Quadric {
+  Mat3 matrix = {};
+  Vec3 rhs;
 
-// The boundary near a face, to first order: the plane of x with normal . x == level.
-struct TangentPlane {
-  Vec3 normal;  // of length 1 from the lower to the higher tissue; zero: none
-  double level = 0;
-  double weight = 0;
+  // weight * (normal . x - offset)^2
+  void add(Vec3 normal, double offset, double weight) {
+    for (std::size_t r = 0; r < 3; ++r) {
+      for (std::size_t c = 0; c < 3; ++c) matrix[r][c] += weight * normal[r] * normal[c];
+    }
+    rhs += weight * offset * normal;
+  }
+  // weight * |x - wish|^2
+  void add(Vec3 wish, double weight) {
+    for (std::size_t r = 0; r < 3; ++r) matrix[r][r] += weight;
+    rhs += weight * wish;
+  }
+  Vec3 minimiser() const {
+    const Mat3& a = matrix;
+    const Vec3 c0 = {a[0][0], a[1][0], a[2][0]}, c1 = {a[0][1], a[1][1], a[2][1]}, c2 = {a[0][2], a[1][2], a[2][2]};
+    const double det = dot(c0, cross(c1, c2));
+    return (1 / det) * Vec3{dot(rhs, cross(c1, c2)), dot(c0, cross(rhs, c2)), dot(c0, cross(c1, rhs))};
+  }
 };
 
-TangentPlane tangent_plane(const TissueMesh& mesh, const InterfaceFace& face, const SurfaceField& field, double voxel) {
-  const Vec3 a = mesh.points_mm[face.vertices[0]], b = mesh.points_mm[face.vertices[1]],
-             c = mesh.points_mm[face.vertices[2]];
-  const Vec3 centre = (1.0 / 3) * (a + b + c), area = cross(b - a, c - a);
-  const std::array<TissueId, 2> pair = {face.low, face.high};
-  std::array<double, 2> share;
-  std::array<Vec3, 2> gradient;
-  field.evaluate(centre, pair, share, gradient);
-  const Vec3 up = gradient[1] - gradient[0];
-  const double steep = norm(up);
-  if (steep * voxel < 1e-3 || dot(up, area) <= 0) return {};
-  const Vec3 normal = (1 / steep) * up;
-  const double off = std::clamp((share[0] - share[1]) / steep, -0.5 * voxel, 0.5 * voxel);
-  return {normal, dot(normal, centre) + off, 0.5 * norm(area)};
-}
+// The boundary of two tissues near a point, to first order: the points x with normal . x == level.
+struct Plane {
+  Vec3 normal;  // of length 1, from the lower tissue to the higher
+  double level = 0;
+  double area = 0;  // of the face it belongs to, mm^2; 0: there is no plane
+};
 
-Vec3 laplacian(const TissueMesh& mesh, const MeshTopology& topology, VertexId v) {
-  const auto neighbours = topology.interface_neighbours[v];
-  if (neighbours.size() < 2) return {};
-  Vec3 mean;
-  for (const VertexId w : neighbours) mean += mesh.points_mm[w];
-  return (1.0 / static_cast<double>(neighbours.size())) * mean - mesh.points_mm[v];
-}
+// A pair of tissues that meet at a vertex, and the sum of the area vectors of their faces there.
+struct PairAtVertex {
+  TissueId low, high;
+  Vec3 area;
+};
+
+class Settling {
+ public:
+  Settling(TissueMesh& mesh, const MeshTopology& topology, const AngleGuard& guard, const SurfaceField& field)
+      : mesh_(mesh),
+        topology_(topology),
+        guard_(guard),
+        field_(field),
+        interfaces_(find_interface_faces(mesh, topology, field.image())),
+        planes_(interfaces_.faces.size()) {
+    const Vec3 s = field.image().spacing_mm;
+    voxel_mm_ = std::max({s.x, s.y, s.z});
+  }
+
+  // Finds the boundary near each face as it lies now.
+  void find_planes() {
+    parallel_for(planes_.size(), [&](std::size_t f) { planes_[f] = plane_at_face(interfaces_.faces[f]); });
+  }
+
+  void settle_vertex(VertexId v) const {
+    if (!topology_.on_interface(v) || touches_tiny_tissue(v)) return;
+    Quadric quadric;
+    if (!add_faces(v, quadric)) return;
+    add_vertex(v, quadric);
+    quadric.add(relaxation(v), kOfSpacing);
+    const Vec3 from = mesh_.points_mm[v];
+    Vec3 goal = from + limited(quadric.minimiser());
+    add_border(v, goal, quadric);
+    double edge = 0;
+    for (const VertexId w : topology_.neighbours[v]) edge += norm(mesh_.points_mm[w] - from);
+    edge /= static_cast<double>(topology_.neighbours[v].size());
+    guard_.advance_best(v, goal, quadric.matrix, 0.2 * edge);
+  }
+
+ private:
+  bool touches_tiny_tissue(VertexId v) const {
+    return std::ranges::any_of(topology_.tissues_of_vertex[v],
+                               [&](TissueId t) { return field_.image().counts[t] < kTinyVoxels; });
+  }
+
+  Vec3 centroid(const InterfaceFace& face) const {
+    return (1.0 / 3) *
+           (mesh_.points_mm[face.vertices[0]] + mesh_.points_mm[face.vertices[1]] + mesh_.points_mm[face.vertices[2]]);
+  }
+
+  Vec3 area_vector(const InterfaceFace& face) const {
+    const Vec3 a = mesh_.points_mm[face.vertices[0]];
+    return 0.5 * cross(mesh_.points_mm[face.vertices[1]] - a, mesh_.points_mm[face.vertices[2]] - a);
+  }
+
+  // None far from the boundary, and where the tissues lie the other way round: the far side of a thin sheet.
+  std::optional<Plane> plane_at(Vec3 p, double share_difference, Vec3 gradient, Vec3 area) const {
+    const double steep = norm(gradient);
+    if (steep * voxel_mm_ < 1e-3 || dot(gradient, area) <= 0) return {};
+    const Vec3 normal = (1 / steep) * gradient;
+    const double off = std::clamp(-share_difference / steep, -0.5 * voxel_mm_, 0.5 * voxel_mm_);
+    return Plane{normal, dot(normal, p) + off, norm(area)};
+  }
+
+  Plane plane_at_face(const InterfaceFace& face) const {
+    const Vec3 area = area_vector(face);
+    if (face.border) {
+      Vec3 normal;
+      normal[face.border->axis] = 1;
+      return {normal, face.border->position_mm, norm(area)};
+    }
+    const std::array<TissueId, 2> pair = {face.low, face.high};
+    std::array<double, 2> share;
+    std::array<Vec3, 2> gradient;
+    const Vec3 centre = centroid(face);
+    field_.evaluate(centre, pair, share, gradient);
+    return plane_at(centre, share[1] - share[0], gradient[1] - gradient[0], area).value_or(Plane{});
+  }
+
+  // The faces at v move with it, as their other vertices do the same. False if there is no boundary near any of them.
+  bool add_faces(VertexId v, Quadric& quadric) const {
+    double total = 0;
+    for (const std::uint32_t f : interfaces_.of_vertex[v]) total += planes_[f].area;
+    if (total == 0) return false;
+    const Vec3 from = mesh_.points_mm[v];
+    for (const std::uint32_t f : interfaces_.of_vertex[v]) {
+      const Plane& plane = planes_[f];
+      const double weight = plane.area / total;
+      const Vec3 centre = centroid(interfaces_.faces[f]), opposite = 1.5 * centre - 0.5 * from;
+      quadric.add(plane.normal, plane.level - dot(plane.normal, centre), kOfFaces * weight);
+      quadric.add(plane.normal, dot(plane.normal, opposite - from), kOfNormals * weight);
+    }
+    return true;
+  }
+
+  std::vector<PairAtVertex> pairs_at(VertexId v) const {
+    std::vector<PairAtVertex> pairs;
+    for (const std::uint32_t f : interfaces_.of_vertex[v]) {
+      const InterfaceFace& face = interfaces_.faces[f];
+      if (face.border) continue;
+      const auto known =
+          std::ranges::find_if(pairs, [&](const PairAtVertex& p) { return p.low == face.low && p.high == face.high; });
+      if (known == pairs.end()) {
+        pairs.push_back({face.low, face.high, area_vector(face)});
+      } else {
+        known->area += area_vector(face);
+      }
+    }
+    return pairs;
+  }
+
+  void add_vertex(VertexId v, Quadric& quadric) const {
+    const std::vector<PairAtVertex> pairs = pairs_at(v);
+    for (const PairAtVertex& pair : pairs) {
+      const std::array<TissueId, 2> tissues = {pair.low, pair.high};
+      std::array<double, 2> share;
+      std::array<Vec3, 2> gradient;
+      const Vec3 p = mesh_.points_mm[v];
+      field_.evaluate(p, tissues, share, gradient);
+      const auto plane = plane_at(p, share[1] - share[0], gradient[1] - gradient[0], pair.area);
+      if (!plane) continue;
+      quadric.add(plane->normal, plane->level - dot(plane->normal, p), kOfVertex / static_cast<double>(pairs.size()));
+    }
+  }
+
+  // Towards the mean of the neighbours on the same surface or line. The planes decide about the way across.
+  Vec3 relaxation(VertexId v) const {
+    const auto neighbours = topology_.interface_neighbours[v];
+    if (neighbours.size() < 2) return {};
+    Vec3 mean;
+    for (const VertexId w : neighbours) mean += mesh_.points_mm[w];
+    Vec3 step = kRelaxation * ((1.0 / static_cast<double>(neighbours.size())) * mean - mesh_.points_mm[v]);
+    if (topology_.tissues_of_vertex[v].size() > 2) {
+      const Vec3 along = mesh_.points_mm[neighbours[1]] - mesh_.points_mm[neighbours[0]];
+      if (neighbours.size() > 2 || along == Vec3{}) return {};
+      return (dot(along, step) / norm_squared(along)) * along;
+    }
+    Vec3 across;
+    for (const std::uint32_t f : interfaces_.of_vertex[v]) across += planes_[f].area * planes_[f].normal;
+    if (across == Vec3{}) return step;
+    return step - (dot(across, step) / norm_squared(across)) * across;
+  }
+
+  // At most one voxel along any axis: the planes say nothing about what lies farther.
+  Vec3 limited(Vec3 step) const {
+    const Vec3 s = field_.image().spacing_mm;
+    const double voxels = std::max({std::abs(step.x) / s.x, std::abs(step.y) / s.y, std::abs(step.z) / s.z});
+    return voxels > 1 ? (1 / voxels) * step : step;
+  }
+
+  void add_border(VertexId v, Vec3& goal, Quadric& quadric) const {
+    for (const std::uint32_t f : interfaces_.of_vertex[v]) {
+      const auto& border = interfaces_.faces[f].border;
+      if (!border) continue;
+      goal[border->axis] = border->position_mm;
+      quadric.matrix[border->axis][border->axis] += kOfBorder;
+    }
+  }
+
+  TissueMesh& mesh_;
+  const MeshTopology& topology_;
+  const AngleGuard& guard_;
+  const SurfaceField& field_;
+  InterfaceFaces interfaces_;
+  std::vector<Plane> planes_;
+  double voxel_mm_;
+};
 
 }  // namespace
 
 void settle(TissueMesh& mesh, const MeshTopology& topology, const AngleGuard& guard, const SurfaceField& field,
             int sweeps, const Stage& stage) {
-  const InterfaceFaces interfaces = find_interface_faces(mesh, topology);
-  const Vec3 spacing = field.image().spacing_mm;
-  const double voxel = std::max({spacing.x, spacing.y, spacing.z});
-  std::vector<TangentPlane> planes(interfaces.faces.size());
-  std::vector<Vec3> laplacians(mesh.points_mm.size());
-  const double kOwn = env("KOWN", 0.25), kFair = env("KFAIR", 0.3), kTang = env("KTANG", 0.5);
-  sweeps = static_cast<int>(env("KSWEEPS", sweeps));
+  Settling settling(mesh, topology, guard, field);
   for (int sweep = 0; sweep < sweeps; ++sweep) {
-    parallel_for(planes.size(),
-                 [&](std::size_t f) { planes[f] = tangent_plane(mesh, interfaces.faces[f], field, voxel); });
-    parallel_for(laplacians.size(), [&](std::size_t v) {
-      laplacians[v] = laplacian(mesh, topology, static_cast<VertexId>(v));
-    });
-    std::array<std::atomic<int>, 8> count{};
-    for_each_vertex_by_colour(topology, stage, [&](VertexId v) {
-      const auto tissues = topology.tissues_of_vertex[v];
-      if (!topology.on_interface(v) || touches_tiny_tissue(tissues, field.image())) return;
-      const Vec3 from = mesh.points_mm[v];
-      const bool junction = tissues.size() > 2;
-      // Data: planes of the faces around.
-      Mat3 normal = {};
-      Vec3 rhs;
-      double total = 0;
-      for (const std::uint32_t f : interfaces.of_vertex[v]) total += planes[f].weight;
-      if (total == 0) return;
-      const auto add = [&](Vec3 n, double off, double weight) {
-        for (std::size_t r = 0; r < 3; ++r) {
-          for (std::size_t c = 0; c < 3; ++c) normal[r][c] += weight * n[r] * n[c];
-        }
-        rhs += weight * off * n;
-      };
-      Vec3 mean_normal;
-      for (const std::uint32_t f : interfaces.of_vertex[v]) {
-        const TangentPlane& plane = planes[f];
-        if (plane.weight == 0) continue;
-        const auto& vertices = interfaces.faces[f].vertices;
-        const Vec3 centre =
-            (1.0 / 3) * (mesh.points_mm[vertices[0]] + mesh.points_mm[vertices[1]] + mesh.points_mm[vertices[2]]);
-        add(plane.normal, plane.level - dot(plane.normal, centre), (1 - kOwn) * plane.weight / total);
-        mean_normal += plane.weight * plane.normal;
-      }
-      const Vec3 own = boundary_step(field, from, tissues);
-      if (norm_squared(own) > 0) {
-        const double length = norm(own);
-        if (length > 1e-9 * voxel) add((1 / length) * own, length, kOwn);
-      } else if (junction) {
-      }
-      // Where smoothing wants it.
-      const Vec3 lap = laplacian(mesh, topology, v);
-      Vec3 mean_lap;
-      int same = 0;
-      for (const VertexId w : topology.interface_neighbours[v]) {
-        if (topology.tissues_of_vertex[w].size() != tissues.size()) continue;
-        mean_lap += laplacians[w];
-        ++same;
-      }
-      Vec3 fair;
-      if (same > 0) fair = lap - (1.0 / same) * mean_lap;
-      Vec3 wish = kTang * lap;
-      if (junction) {
-        // along the line: only the tangential part of the relaxation, fairing across
-        const auto nb = topology.interface_neighbours[v];
-        if (nb.size() == 2) {
-          const Vec3 t = mesh.points_mm[nb[1]] - mesh.points_mm[nb[0]];
-          const double tt = norm_squared(t);
-          if (tt > 0) wish = (dot(t, wish) / tt) * t + (fair - (dot(t, fair) / tt) * t);
-        } else {
-          wish = {};
-        }
-      } else {
-        const double nn = norm_squared(mean_normal);
-        if (nn > 0) wish = wish + (dot(mean_normal, fair - wish) / nn) * mean_normal;
-      }
-      rhs += kFair * wish;
-      for (std::size_t r = 0; r < 3; ++r) normal[r][r] += kFair;
-      Vec3 step = solve_symmetric(normal, rhs);
-      const double voxels =
-          std::max({std::abs(step.x) / spacing.x, std::abs(step.y) / spacing.y, std::abs(step.z) / spacing.z});
-      if (voxels > 1) step = (1 / voxels) * step;
-      const double gone = guard.advance(v, from + step, 2);
-      if (gone == 1) ++count[junction ? 1 : 0];
-      else if (gone > 0) ++count[junction ? 3 : 2];
-      else ++count[junction ? 5 : 4];
-    });
-    if (std::getenv("SVERB") && sweep == sweeps - 1)
-      printf("sweep %d: full %d part %d none %d; junction %d %d %d\n", sweep, count[0].load(), count[2].load(),
-             count[4].load(), count[1].load(), count[3].load(), count[5].load());
+    settling.find_planes();
+    for_each_vertex_by_colour(topology, stage, [&](VertexId v) { settling.settle_vertex(v); });
     relax_interior(mesh, topology, guard, stage);
     stage.at(static_cast<double>(sweep + 1) / sweeps);
   }
