@@ -25,6 +25,10 @@ constexpr double kOfBorder = 1e4;
 // Share of the way to the mean of the neighbours in a sweep.
 constexpr double kRelaxation = 0.5;
 
+// Volume is won back by shifting a tissue's boundary no farther than this share of a voxel, a part of it in each sweep.
+constexpr double kMostShift = 0.15;
+constexpr double kDamping = 0.5;
+
 // A ball of this many voxels just keeps its place in the smoothed field.
 constexpr std::uint64_t kTinyVoxels = 8;
 
@@ -74,9 +78,33 @@ class Settling {
         guard_(guard),
         field_(field),
         interfaces_(find_interface_faces(mesh, topology, field.image())),
-        planes_(interfaces_.faces.size()) {
+        planes_(interfaces_.faces.size()),
+        outward_mm_(field.image().labels.size()) {
     const Vec3 s = field.image().spacing_mm;
     voxel_mm_ = std::max({s.x, s.y, s.z});
+  }
+
+  // Shifts the boundary of each tissue by what brings the volume of its voxels: the volume that it lacks over its area.
+  // Chords of a coarse mesh and parts too thin for it lose some; a vertex that the guard stopped may lose or win some.
+  void keep_volumes() {
+    const TissueImage& image = field_.image();
+    const Vec3 s = image.spacing_mm;
+    std::vector<double> volume(image.labels.size()), area(image.labels.size());
+    for (const InterfaceFace& face : interfaces_.faces) {
+      const Vec3 out = area_vector(face);
+      const double part = dot(centroid(face), out) / 3;
+      volume[face.low] += part;
+      volume[face.high] -= part;
+      if (face.border) continue;
+      area[face.low] += norm(out);
+      area[face.high] += norm(out);
+    }
+    const double most = kMostShift * (s.x + s.y + s.z) / 3;
+    for (std::size_t t = 1; t < volume.size(); ++t) {
+      if (area[t] == 0) continue;
+      const double lacking = static_cast<double>(image.counts[t]) * s.x * s.y * s.z - volume[t];
+      outward_mm_[t] = std::clamp(outward_mm_[t] + kDamping * lacking / area[t], -most, most);
+    }
   }
 
   // Finds the boundary near each face as it lies now.
@@ -136,7 +164,9 @@ class Settling {
     std::array<Vec3, 2> gradient;
     const Vec3 centre = centroid(face);
     field_.evaluate(centre, pair, share, gradient);
-    return plane_at(centre, share[1] - share[0], gradient[1] - gradient[0], area).value_or(Plane{});
+    Plane plane = plane_at(centre, share[1] - share[0], gradient[1] - gradient[0], area).value_or(Plane{});
+    plane.level += outward_mm_[face.low] - outward_mm_[face.high];
+    return plane;
   }
 
   // The faces at v move with it, as their other vertices do the same. False if there is no boundary near any of them.
@@ -225,6 +255,7 @@ class Settling {
   const SurfaceField& field_;
   InterfaceFaces interfaces_;
   std::vector<Plane> planes_;
+  std::vector<double> outward_mm_;  // by tissue: its boundary's shift
   double voxel_mm_;
 };
 
@@ -234,6 +265,7 @@ void settle(TissueMesh& mesh, const MeshTopology& topology, const AngleGuard& gu
             int sweeps, const Stage& stage) {
   Settling settling(mesh, topology, guard, field);
   for (int sweep = 0; sweep < sweeps; ++sweep) {
+    if (sweep > 0) settling.keep_volumes();
     settling.find_planes();
     for_each_vertex_by_colour(topology, stage, [&](VertexId v) { settling.settle_vertex(v); });
     relax_interior(mesh, topology, guard, stage);
