@@ -1,5 +1,7 @@
 #include "deform/angle_guard.h"
 
+#include <algorithm>
+
 #include "base/parallel.h"
 
 namespace anatomesh {
@@ -7,6 +9,28 @@ namespace {
 
 // A move shorter than this share of an edge is not worth its tests.
 constexpr double kStill = 0.01;
+
+// A vertex inside whose worst tetrahedron is nearer to its bounds than this looks for a better place around it. The
+// worst is told by the differences of cosines and mean ratio from their bounds.
+constexpr double kRoom = 0.15;
+constexpr double kRoomReach = 0.15;  // of an edge
+constexpr int kRoomRounds = 6;
+
+// How long a vertex that was stopped looks for a better place around it.
+constexpr int kSearchRounds = 4;
+
+constexpr double kDiagonal = 0.6;
+constexpr std::array<Vec3, 8> kCubeDirections = {
+    Vec3{kDiagonal, kDiagonal, kDiagonal},    Vec3{-kDiagonal, -kDiagonal, kDiagonal},
+    Vec3{-kDiagonal, kDiagonal, -kDiagonal},  Vec3{kDiagonal, -kDiagonal, -kDiagonal},
+    Vec3{-kDiagonal, -kDiagonal, -kDiagonal}, Vec3{kDiagonal, kDiagonal, -kDiagonal},
+    Vec3{kDiagonal, -kDiagonal, kDiagonal},   Vec3{-kDiagonal, kDiagonal, kDiagonal}};
+constexpr std::array<Vec3, 14> kAllDirections = [] {
+  std::array<Vec3, 14> all = {Vec3{1, 0, 0},  Vec3{-1, 0, 0}, Vec3{0, 1, 0},
+                              Vec3{0, -1, 0}, Vec3{0, 0, 1},  Vec3{0, 0, -1}};
+  std::ranges::copy(kCubeDirections, all.begin() + 6);
+  return all;
+}();
 
 std::array<Vec3, 4> corners_with(const TissueMesh& mesh, TetId t, VertexId moved, Vec3 p) {
   std::array<Vec3, 4> corners;
@@ -41,20 +65,87 @@ double AngleGuard::advance(VertexId v, Vec3 p, int halvings) const {
   return 0;
 }
 
-double AngleGuard::slack(VertexId v, Vec3 p, double enough) const {
-  double worst = 1;
-  for (const TetId t : topology_.tets_of_vertex[v]) {
-    const auto [a, b, c, d] = corners_with(mesh_, t, v, p);
-    if (mesh_.tissues[t] == 0) {
-      if (!within(kCushionBounds, a, b, c, d)) return -1;
-      continue;
+double AngleGuard::advance_best(VertexId v, Vec3 goal, const Mat3& metric, double reach) const {
+  const double share = advance(v, goal, 3);
+  if (share == 1) return 1;
+  const auto cost = [&](Vec3 at) { return dot(at - goal, metric * (at - goal)); };
+  Vec3& best = mesh_.points_mm[v];
+  double least = cost(best);
+  double radius = reach;
+  bool any = share > 0;
+  for (int round = 0; round < kSearchRounds; ++round) {
+    const Vec3 centre = best;
+    bool moved = false;
+    for (const Vec3 direction : kAllDirections) {
+      const Vec3 at = centre + radius * direction;
+      const double c = cost(at);
+      if (c >= least || !fits(v, at)) continue;
+      best = at;
+      least = c;
+      moved = any = true;
     }
-    const ShapeMeasure s = measure_shape(a, b, c, d);
-    worst = std::min({worst, bounds_.largest_cos - s.largest_cos, s.smallest_cos - bounds_.smallest_cos,
-                      s.mean_ratio - bounds_.min_mean_ratio});
-    if (worst < enough) return worst;
+    if (!moved) radius *= 0.5;
   }
-  return worst;
+  return any ? 0.5 : 0;
+}
+
+double AngleGuard::slack(VertexId v, Vec3 p, double enough) const {
+  TetId worst = 0;
+  return slack(v, p, enough, worst);
+}
+
+double AngleGuard::slack(VertexId v, Vec3 p, double enough, TetId& worst) const {
+  double least = 1;
+  for (const TetId t : topology_.tets_of_vertex[v]) {
+    const double s = slack_of(t, v, p);
+    if (s >= least) continue;
+    least = s;
+    worst = t;
+    if (least < enough) return least;
+  }
+  return least;
+}
+
+double AngleGuard::slack_of(TetId t, VertexId v, Vec3 p) const {
+  const auto [a, b, c, d] = corners_with(mesh_, t, v, p);
+  if (mesh_.tissues[t] == 0) return within(kCushionBounds, a, b, c, d) ? 1 : -1;
+  const TetGeometry g(a, b, c, d);
+  if (!(g.volume6 > 0)) return -1;
+  double largest = -1, smallest = 1;
+  for (std::size_t e = 0; e < 6; ++e) {
+    const double cosine = g.cosine[e] / g.areas[e];
+    largest = std::max(largest, cosine);
+    smallest = std::min(smallest, cosine);
+  }
+  // The mean ratio's cube needs no cube root; divided by its slope at the bound it is like the ratio itself there.
+  const double bound = bounds_.min_mean_ratio;
+  const double cube = 432 * g.volume6 * g.volume6 / (g.edges * g.edges * g.edges);
+  const double of_ratio = (cube - bound * bound * bound) / (3 * bound * bound);
+  return std::min({bounds_.largest_cos - largest, smallest - bounds_.smallest_cos, of_ratio});
+}
+
+void AngleGuard::make_room(VertexId v, double enough, double reach) const {
+  Vec3& best = mesh_.points_mm[v];
+  TetId worst = 0;
+  double least = slack(v, best, -1, worst);
+  if (least < 0) return;
+  double radius = reach;
+  for (int round = 0; round < kRoomRounds && least < enough; ++round) {
+    const Vec3 centre = best;
+    bool moved = false;
+    for (const Vec3 direction : kCubeDirections) {
+      const Vec3 at = centre + radius * direction;
+      if (slack_of(worst, v, at) <= least) continue;
+      TetId next = worst;
+      const double s = slack(v, at, least, next);
+      if (s <= least) continue;
+      least = s;
+      worst = next;
+      best = at;
+      moved = true;
+    }
+    if (!moved) radius *= 0.5;
+  }
 }
 
 void for_each_vertex_by_colour(const MeshTopology& topology, const Stage& stage,
@@ -78,18 +169,26 @@ void advance_all(TissueMesh& mesh, const MeshTopology& topology, const AngleGuar
 void relax_interior(TissueMesh& mesh, const MeshTopology& topology, const AngleGuard& guard, const Stage& stage) {
   for_each_vertex_by_colour(topology, stage, [&](VertexId v) {
     if (topology.on_interface(v) || topology.outside(v)) return;
+    const Vec3 from = mesh.points_mm[v];
+    const auto neighbours = topology.neighbours[v];
     Vec3 mean;
-    for (const VertexId w : topology.neighbours[v]) mean += mesh.points_mm[w];
-    mean = (1.0 / static_cast<double>(topology.neighbours[v].size())) * mean;
-    const Vec3 from = mesh.points_mm[v], edge = mesh.points_mm[topology.neighbours[v][0]] - from;
-    if (norm_squared(mean - from) < kStill * kStill * norm_squared(edge)) return;
-    const double before = std::max(0.0, guard.slack(v, from, -1));
-    for (const double share : {1.0, 0.3}) {
-      const Vec3 at = from + share * (mean - from);
-      if (guard.slack(v, at, before) < before) continue;
-      mesh.points_mm[v] = at;
-      return;
+    double edge = 0;
+    for (const VertexId w : neighbours) {
+      mean += mesh.points_mm[w];
+      edge += norm(mesh.points_mm[w] - from);
     }
+    mean = (1.0 / static_cast<double>(neighbours.size())) * mean;
+    edge /= static_cast<double>(neighbours.size());
+    if (norm_squared(mean - from) >= kStill * kStill * edge * edge) {
+      const double before = std::max(0.0, guard.slack(v, from, -1));
+      for (const double share : {1.0, 0.3}) {
+        const Vec3 at = from + share * (mean - from);
+        if (guard.slack(v, at, before) < before) continue;
+        mesh.points_mm[v] = at;
+        break;
+      }
+    }
+    guard.make_room(v, kRoom, kRoomReach * edge);
   });
 }
 

@@ -27,11 +27,23 @@ class AngleGuard {
   /// the share gone, 0 if none. Neighbours of v must not move at the same time.
   double advance(VertexId v, Vec3 p, int halvings) const;
 
+  /// Moves v towards the goal, and where that is stopped on to the best place around that the bounds allow: the one
+  /// with the least (x - goal)^T metric (x - goal), found in steps of `reach` (mm) and fractions of it. Returns 1 when v is
+  /// at the goal, 0 when it stays, else 0.5. Neighbours of v must not move at the same time.
+  double advance_best(VertexId v, Vec3 goal, const Mat3& metric, double reach) const;
+
+  /// Moves v to a place around it where the worst of its tetrahedra is farther from the bounds (see slack()), in steps
+  /// of `reach` (mm) and fractions of it, until it is `enough`.
+  void make_room(VertexId v, double enough, double reach) const;
+
   /// How far the worst tetrahedron at v is from its bounds when v is at p; negative outside of them, 1 at
   /// the most. Cushion tetrahedra count only when they turn over. Stops at the first that is below `enough`.
   double slack(VertexId v, Vec3 p, double enough) const;
 
  private:
+  double slack(VertexId v, Vec3 p, double enough, TetId& worst) const;
+  double slack_of(TetId t, VertexId v, Vec3 p) const;
+
   TissueMesh& mesh_;
   const MeshTopology& topology_;
   ShapeBounds bounds_;

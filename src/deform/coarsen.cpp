@@ -22,7 +22,7 @@ constexpr double kMargin = 1e-9;  // of slack, above its rounding errors
 
 class Coarsener {
  public:
-  Coarsener(MeshEditor& mesh, const LabelField& field, const CoarsenLimits& limits)
+  Coarsener(MeshEditor& mesh, const SurfaceField& field, const CoarsenLimits& limits)
       : mesh_(mesh), field_(field), limits_(limits), star_(mesh) {}
 
   // Collapses v where that can be; whether it has.
@@ -51,7 +51,7 @@ class Coarsener {
   double distance_from_boundary(Vec3 p, TissueId a, TissueId b) const;
 
   MeshEditor& mesh_;
-  const LabelField& field_;
+  const SurfaceField& field_;
   const CoarsenLimits& limits_;
   VertexStar star_;
   std::vector<TissueId> tissues_;            // at the centre; where it is on an interface
@@ -274,7 +274,7 @@ bool Coarsener::visit(VertexId v) {
 
 }  // namespace
 
-std::size_t coarsen(MeshEditor& mesh, const LabelField& field, const CoarsenLimits& limits, int rounds,
+std::size_t coarsen(MeshEditor& mesh, const SurfaceField& field, const CoarsenLimits& limits, int rounds,
                     const Stage& stage) {
   constexpr VertexId kPerCheck = 1 << 14;
   constexpr std::size_t kFew = 2000;  // a round that finds one in so many is the last

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/stage.h"
-#include "boundary/label_field.h"
+#include "boundary/surface_field.h"
 #include "mesh/mesh_editor.h"
 #include "mesh/tet_shape.h"
 
@@ -28,7 +28,7 @@ struct CoarsenLimits {
 /// they lie. Neighbours of a vertex that has gone are left alone until the next round; later rounds look at the
 /// neighbourhoods that have changed only. Ends after `rounds`, or when a round finds (almost) nothing. Returns how many
 /// vertices have gone. Deterministic. Cost: about 5 us a vertex. Throws Cancelled.
-std::size_t coarsen(MeshEditor& mesh, const LabelField& field, const CoarsenLimits& limits, int rounds,
+std::size_t coarsen(MeshEditor& mesh, const SurfaceField& field, const CoarsenLimits& limits, int rounds,
                     const Stage& stage);
 
 }  // namespace anatomesh

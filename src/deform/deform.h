@@ -6,7 +6,7 @@
 #include "anatomesh/options.h"
 #include "base/stage.h"
 #include "boundary/edge_points.h"
-#include "boundary/label_field.h"
+#include "boundary/surface_field.h"
 #include "deform/improve.h"
 #include "image/tissue_image.h"
 #include "mesh/tet_shape.h"
@@ -35,7 +35,7 @@ class Deformer {
   const DeformOptions& options_;
   ShapeBounds bounds_;
   std::vector<Material> materials_;  // one a tissue
-  LabelField field_;
+  SurfaceField field_;
   std::vector<EdgePoint> targets_;
 };
 

@@ -22,7 +22,7 @@ constexpr double kEnoughSlack = 0.05;  // tetrahedra with less are worth improvi
 
 class Improver {
  public:
-  Improver(TissueMesh& mesh, const LabelField& field, const ShapeBounds& bounds, const ImproveOptions& options,
+  Improver(TissueMesh& mesh, const SurfaceField& field, const ShapeBounds& bounds, const ImproveOptions& options,
            const Stage& stage)
       : mesh_(mesh), field_(field), bounds_(bounds), options_(options), stage_(stage) {}
 
@@ -35,7 +35,7 @@ class Improver {
   CoarsenLimits limits(const MeshEditor& editor) const;
 
   TissueMesh& mesh_;
-  const LabelField& field_;
+  const SurfaceField& field_;
   const ShapeBounds& bounds_;
   const ImproveOptions& options_;
   const Stage& stage_;
@@ -104,7 +104,7 @@ ImproveReport Improver::run() {
 
 }  // namespace
 
-ImproveReport improve(TissueMesh& mesh, const LabelField& field, const ShapeBounds& bounds,
+ImproveReport improve(TissueMesh& mesh, const SurfaceField& field, const ShapeBounds& bounds,
                       const ImproveOptions& options, const Stage& stage) {
   return Improver(mesh, field, bounds, options, stage).run();
 }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/stage.h"
-#include "boundary/label_field.h"
+#include "boundary/surface_field.h"
 #include "mesh/tet_shape.h"
 #include "mesh/tissue_mesh.h"
 
@@ -35,7 +35,7 @@ struct ImproveReport {
 /// tolerance, inside the tissues as far as the bounds and sizes allow. All tetrahedra of the tissues stay inside the
 /// bounds, and the tissues' topology stays as it is. Cushion last, as before. Does not depend on the number of threads.
 /// Throws Cancelled.
-ImproveReport improve(TissueMesh& mesh, const LabelField& field, const ShapeBounds& bounds,
+ImproveReport improve(TissueMesh& mesh, const SurfaceField& field, const ShapeBounds& bounds,
                       const ImproveOptions& options, const Stage& stage);
 
 }  // namespace anatomesh

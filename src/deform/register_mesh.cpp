@@ -5,7 +5,7 @@
 #include "base/parallel.h"
 #include "base/vec.h"
 #include "boundary/matching.h"
-#include "deform/settle.h"
+#include "deform/sides.h"
 #include "fem/block_matrix.h"
 #include "fem/solver.h"
 
@@ -50,7 +50,7 @@ struct TissuePart {
 
 }  // namespace
 
-void register_mesh(TissueMesh& mesh, const MeshTopology& topology, const AngleGuard& guard, const LabelField& field,
+void register_mesh(TissueMesh& mesh, const MeshTopology& topology, const AngleGuard& guard, const SurfaceField& field,
                    std::span<const EdgePoint> targets, std::span<const Material> materials, int iterations,
                    const Stage& stage) {
   const TissuePart part(mesh, topology);

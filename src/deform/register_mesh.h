@@ -11,14 +11,14 @@
 #include "anatomesh/options.h"
 #include "base/stage.h"
 #include "boundary/edge_points.h"
-#include "boundary/label_field.h"
+#include "boundary/surface_field.h"
 #include "deform/angle_guard.h"
 
 namespace anatomesh {
 
 /// Moves the mesh `iterations` times by the minimiser of U^T K U + (H U - D)^T S (H U - D) as far as the guard lets it.
 /// materials: one a tissue, [0] unused. The tissues' tetrahedra and vertices come before the cushion's.
-void register_mesh(TissueMesh& mesh, const MeshTopology& topology, const AngleGuard& guard, const LabelField& field,
+void register_mesh(TissueMesh& mesh, const MeshTopology& topology, const AngleGuard& guard, const SurfaceField& field,
                    std::span<const EdgePoint> targets, std::span<const Material> materials, int iterations,
                    const Stage& stage);
 

@@ -3,118 +3,271 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+#include <vector>
+
+#include "base/parallel.h"
+#include "base/vec.h"
+#include "deform/interface_faces.h"
 
 namespace anatomesh {
 namespace {
 
-// More tissues at one point than this are all but unheard of; the point is then settled for the first of them.
-constexpr std::size_t kMaxTissues = 8;
+// What a vertex minimises is a sum of squared distances: of the faces around it from the boundary (at their centroids),
+// of itself from the boundary, of the other ends of those faces from their tangent planes, of itself from where it
+// would be evenly spaced. The weights of these parts:
+constexpr double kOfFaces = 0.75;
+constexpr double kOfVertex = 0.25;
+constexpr double kOfNormals = 0.3;
+constexpr double kOfSpacing = 0.3;
+// Faces on the image's border lie there exactly.
+constexpr double kOfBorder = 1e4;
+// Share of the way to the mean of the neighbours in a sweep.
+constexpr double kRelaxation = 0.5;
 
-// Solves the symmetric positive definite system A x = b.
-Vec3 solve_symmetric(const Mat3& a, Vec3 b) {
-  const Vec3 c0 = {a[0][0], a[1][0], a[2][0]}, c1 = {a[0][1], a[1][1], a[2][1]}, c2 = {a[0][2], a[1][2], a[2][2]};
-  const double det = dot(c0, cross(c1, c2));
-  return (1 / det) * Vec3{dot(b, cross(c1, c2)), dot(c0, cross(b, c2)), dot(c0, cross(c1, b))};
-}
-
-Vec3 mean_of_interface_neighbours(const TissueMesh& mesh, const MeshTopology& topology, VertexId v) {
-  const auto neighbours = topology.interface_neighbours[v];
-  if (neighbours.size() < 2) return mesh.points_mm[v];
-  Vec3 mean;
-  for (const VertexId w : neighbours) mean += mesh.points_mm[w];
-  return (1.0 / static_cast<double>(neighbours.size())) * mean;
-}
+// Volume is won back by shifting a tissue's boundary no farther than this share of a voxel, a part of it in each sweep.
+constexpr double kMostShift = 0.15;
+constexpr double kDamping = 0.5;
 
 // A ball of this many voxels just keeps its place in the smoothed field.
 constexpr std::uint64_t kTinyVoxels = 8;
 
-bool touches_tiny_tissue(std::span<const TissueId> tissues, const TissueImage& image) {
-  return std::any_of(tissues.begin(), tissues.end(), [&](TissueId t) { return image.counts[t] < kTinyVoxels; });
-}
+// A sum of squared distances to planes, as a function of a displacement.
+struct Quadric {
+  Mat3 matrix = {};
+  Vec3 rhs;
 
-// A few steps: one is at most half a voxel long, and relaxing can take a vertex farther from the boundary than that.
-Vec3 on_boundary(const LabelField& field, Vec3 p, std::span<const TissueId> tissues) {
-  constexpr int kSteps = 4;
-  constexpr double kEnough = 0.02;  // of a voxel
-  const Vec3 spacing = field.image().spacing_mm;
-  const double enough = kEnough * std::min({spacing.x, spacing.y, spacing.z});
-  for (int n = 0; n < kSteps; ++n) {
-    const Vec3 step = boundary_step(field, p, tissues);
-    p += step;
-    if (norm(step) < enough) break;
+  // weight * (normal . x - offset)^2
+  void add(Vec3 normal, double offset, double weight) {
+    for (std::size_t r = 0; r < 3; ++r) {
+      for (std::size_t c = 0; c < 3; ++c) matrix[r][c] += weight * normal[r] * normal[c];
+    }
+    rhs += weight * offset * normal;
   }
-  return p;
-}
+  // weight * |x - wish|^2
+  void add(Vec3 wish, double weight) {
+    for (std::size_t r = 0; r < 3; ++r) matrix[r][r] += weight;
+    rhs += weight * wish;
+  }
+  Vec3 minimiser() const {
+    const Mat3& a = matrix;
+    const Vec3 c0 = {a[0][0], a[1][0], a[2][0]}, c1 = {a[0][1], a[1][1], a[2][1]}, c2 = {a[0][2], a[1][2], a[2][2]};
+    const double det = dot(c0, cross(c1, c2));
+    return (1 / det) * Vec3{dot(rhs, cross(c1, c2)), dot(c0, cross(rhs, c2)), dot(c0, cross(c1, rhs))};
+  }
+};
+
+// The boundary of two tissues near a point, to first order: the points x with normal . x == level.
+struct Plane {
+  Vec3 normal;  // of length 1, from the lower tissue to the higher
+  double level = 0;
+  double area = 0;  // of the face it belongs to, mm^2; 0: there is no plane
+};
+
+// A pair of tissues that meet at a vertex, and the sum of the area vectors of their faces there.
+struct PairAtVertex {
+  TissueId low, high;
+  Vec3 area;
+};
+
+class Settling {
+ public:
+  Settling(TissueMesh& mesh, const MeshTopology& topology, const AngleGuard& guard, const SurfaceField& field)
+      : mesh_(mesh),
+        topology_(topology),
+        guard_(guard),
+        field_(field),
+        interfaces_(find_interface_faces(mesh, topology, field.image())),
+        planes_(interfaces_.faces.size()),
+        outward_mm_(field.image().labels.size()) {
+    const Vec3 s = field.image().spacing_mm;
+    voxel_mm_ = std::max({s.x, s.y, s.z});
+  }
+
+  // Shifts the boundary of each tissue by what brings the volume of its voxels: the volume that it lacks over its area.
+  // Chords of a coarse mesh and parts too thin for it lose some; a vertex that the guard stopped may lose or win some.
+  void keep_volumes() {
+    const TissueImage& image = field_.image();
+    const Vec3 s = image.spacing_mm;
+    std::vector<double> volume(image.labels.size()), area(image.labels.size());
+    for (const InterfaceFace& face : interfaces_.faces) {
+      const Vec3 out = area_vector(face);
+      const double part = dot(centroid(face), out) / 3;
+      volume[face.low] += part;
+      volume[face.high] -= part;
+      if (face.border) continue;
+      area[face.low] += norm(out);
+      area[face.high] += norm(out);
+    }
+    const double most = kMostShift * (s.x + s.y + s.z) / 3;
+    for (std::size_t t = 1; t < volume.size(); ++t) {
+      if (area[t] == 0) continue;
+      const double lacking = static_cast<double>(image.counts[t]) * s.x * s.y * s.z - volume[t];
+      outward_mm_[t] = std::clamp(outward_mm_[t] + kDamping * lacking / area[t], -most, most);
+    }
+  }
+
+  // Finds the boundary near each face as it lies now.
+  void find_planes() {
+    parallel_for(planes_.size(), [&](std::size_t f) { planes_[f] = plane_at_face(interfaces_.faces[f]); });
+  }
+
+  void settle_vertex(VertexId v) const {
+    if (!topology_.on_interface(v) || touches_tiny_tissue(v)) return;
+    Quadric quadric;
+    if (!add_faces(v, quadric)) return;
+    add_vertex(v, quadric);
+    quadric.add(relaxation(v), kOfSpacing);
+    const Vec3 from = mesh_.points_mm[v];
+    Vec3 goal = from + limited(quadric.minimiser());
+    add_border(v, goal, quadric);
+    double edge = 0;
+    for (const VertexId w : topology_.neighbours[v]) edge += norm(mesh_.points_mm[w] - from);
+    edge /= static_cast<double>(topology_.neighbours[v].size());
+    guard_.advance_best(v, goal, quadric.matrix, 0.2 * edge);
+  }
+
+ private:
+  bool touches_tiny_tissue(VertexId v) const {
+    return std::ranges::any_of(topology_.tissues_of_vertex[v],
+                               [&](TissueId t) { return field_.image().counts[t] < kTinyVoxels; });
+  }
+
+  Vec3 centroid(const InterfaceFace& face) const {
+    return (1.0 / 3) *
+           (mesh_.points_mm[face.vertices[0]] + mesh_.points_mm[face.vertices[1]] + mesh_.points_mm[face.vertices[2]]);
+  }
+
+  Vec3 area_vector(const InterfaceFace& face) const {
+    const Vec3 a = mesh_.points_mm[face.vertices[0]];
+    return 0.5 * cross(mesh_.points_mm[face.vertices[1]] - a, mesh_.points_mm[face.vertices[2]] - a);
+  }
+
+  // None far from the boundary, and where the tissues lie the other way round: the far side of a thin sheet.
+  std::optional<Plane> plane_at(Vec3 p, double share_difference, Vec3 gradient, Vec3 area) const {
+    const double steep = norm(gradient);
+    if (steep * voxel_mm_ < 1e-3 || dot(gradient, area) <= 0) return {};
+    const Vec3 normal = (1 / steep) * gradient;
+    const double off = std::clamp(-share_difference / steep, -0.5 * voxel_mm_, 0.5 * voxel_mm_);
+    return Plane{normal, dot(normal, p) + off, norm(area)};
+  }
+
+  Plane plane_at_face(const InterfaceFace& face) const {
+    const Vec3 area = area_vector(face);
+    if (face.border) {
+      Vec3 normal;
+      normal[face.border->axis] = 1;
+      return {normal, face.border->position_mm, norm(area)};
+    }
+    const std::array<TissueId, 2> pair = {face.low, face.high};
+    std::array<double, 2> share;
+    std::array<Vec3, 2> gradient;
+    const Vec3 centre = centroid(face);
+    field_.evaluate(centre, pair, share, gradient);
+    Plane plane = plane_at(centre, share[1] - share[0], gradient[1] - gradient[0], area).value_or(Plane{});
+    plane.level += outward_mm_[face.low] - outward_mm_[face.high];
+    return plane;
+  }
+
+  // The faces at v move with it, as their other vertices do the same. False if there is no boundary near any of them.
+  bool add_faces(VertexId v, Quadric& quadric) const {
+    double total = 0;
+    for (const std::uint32_t f : interfaces_.of_vertex[v]) total += planes_[f].area;
+    if (total == 0) return false;
+    const Vec3 from = mesh_.points_mm[v];
+    for (const std::uint32_t f : interfaces_.of_vertex[v]) {
+      const Plane& plane = planes_[f];
+      const double weight = plane.area / total;
+      const Vec3 centre = centroid(interfaces_.faces[f]), opposite = 1.5 * centre - 0.5 * from;
+      quadric.add(plane.normal, plane.level - dot(plane.normal, centre), kOfFaces * weight);
+      quadric.add(plane.normal, dot(plane.normal, opposite - from), kOfNormals * weight);
+    }
+    return true;
+  }
+
+  std::vector<PairAtVertex> pairs_at(VertexId v) const {
+    std::vector<PairAtVertex> pairs;
+    for (const std::uint32_t f : interfaces_.of_vertex[v]) {
+      const InterfaceFace& face = interfaces_.faces[f];
+      if (face.border) continue;
+      const auto known =
+          std::ranges::find_if(pairs, [&](const PairAtVertex& p) { return p.low == face.low && p.high == face.high; });
+      if (known == pairs.end()) {
+        pairs.push_back({face.low, face.high, area_vector(face)});
+      } else {
+        known->area += area_vector(face);
+      }
+    }
+    return pairs;
+  }
+
+  void add_vertex(VertexId v, Quadric& quadric) const {
+    const std::vector<PairAtVertex> pairs = pairs_at(v);
+    for (const PairAtVertex& pair : pairs) {
+      const std::array<TissueId, 2> tissues = {pair.low, pair.high};
+      std::array<double, 2> share;
+      std::array<Vec3, 2> gradient;
+      const Vec3 p = mesh_.points_mm[v];
+      field_.evaluate(p, tissues, share, gradient);
+      const auto plane = plane_at(p, share[1] - share[0], gradient[1] - gradient[0], pair.area);
+      if (!plane) continue;
+      quadric.add(plane->normal, plane->level - dot(plane->normal, p), kOfVertex / static_cast<double>(pairs.size()));
+    }
+  }
+
+  // Towards the mean of the neighbours on the same surface or line. The planes decide about the way across.
+  Vec3 relaxation(VertexId v) const {
+    const auto neighbours = topology_.interface_neighbours[v];
+    if (neighbours.size() < 2) return {};
+    Vec3 mean;
+    for (const VertexId w : neighbours) mean += mesh_.points_mm[w];
+    Vec3 step = kRelaxation * ((1.0 / static_cast<double>(neighbours.size())) * mean - mesh_.points_mm[v]);
+    if (topology_.tissues_of_vertex[v].size() > 2) {
+      const Vec3 along = mesh_.points_mm[neighbours[1]] - mesh_.points_mm[neighbours[0]];
+      if (neighbours.size() > 2 || along == Vec3{}) return {};
+      return (dot(along, step) / norm_squared(along)) * along;
+    }
+    Vec3 across;
+    for (const std::uint32_t f : interfaces_.of_vertex[v]) across += planes_[f].area * planes_[f].normal;
+    if (across == Vec3{}) return step;
+    return step - (dot(across, step) / norm_squared(across)) * across;
+  }
+
+  // At most one voxel along any axis: the planes say nothing about what lies farther.
+  Vec3 limited(Vec3 step) const {
+    const Vec3 s = field_.image().spacing_mm;
+    const double voxels = std::max({std::abs(step.x) / s.x, std::abs(step.y) / s.y, std::abs(step.z) / s.z});
+    return voxels > 1 ? (1 / voxels) * step : step;
+  }
+
+  void add_border(VertexId v, Vec3& goal, Quadric& quadric) const {
+    for (const std::uint32_t f : interfaces_.of_vertex[v]) {
+      const auto& border = interfaces_.faces[f].border;
+      if (!border) continue;
+      goal[border->axis] = border->position_mm;
+      quadric.matrix[border->axis][border->axis] += kOfBorder;
+    }
+  }
+
+  TissueMesh& mesh_;
+  const MeshTopology& topology_;
+  const AngleGuard& guard_;
+  const SurfaceField& field_;
+  InterfaceFaces interfaces_;
+  std::vector<Plane> planes_;
+  std::vector<double> outward_mm_;  // by tissue: its boundary's shift
+  double voxel_mm_;
+};
 
 }  // namespace
 
-// Sum over the tissues of (gradient of its share) . (direction from v into it). That direction is the sum of the area
-// vectors of the faces opposite to v.
-bool is_on_its_side(const TissueMesh& mesh, const MeshTopology& topology, const LabelField& field, VertexId v, Vec3 p) {
-  const auto tissues = topology.tissues_of_vertex[v].first(std::min(topology.tissues_of_vertex[v].size(), kMaxTissues));
-  std::array<double, kMaxTissues> share;
-  std::array<Vec3, kMaxTissues> gradient;
-  field.evaluate(p, tissues, std::span(share).first(tissues.size()), std::span(gradient).first(tissues.size()));
-  double alignment = 0;
-  for (const TetId t : topology.tets_of_vertex[v]) {
-    const auto tissue = std::ranges::find(tissues, mesh.tissues[t]);
-    if (tissue == tissues.end()) continue;
-    const auto& tet = mesh.tets[t];
-    const auto corner = static_cast<std::size_t>(std::ranges::find(tet, v) - tet.begin());
-    std::array<Vec3, 3> face;
-    for (std::size_t n = 0; n < 3; ++n) face[n] = mesh.points_mm[tet[(corner + 1 + n) % 4]];
-    const Vec3 area = cross(face[1] - face[0], face[2] - face[0]);
-    const Vec3 outward = dot(area, face[0] - mesh.points_mm[v]) > 0 ? area : -area;
-    alignment += dot(gradient[static_cast<std::size_t>(tissue - tissues.begin())], outward);
-  }
-  return alignment >= 0;
-}
-
-// Damped Gauss-Newton step on the differences of each share from their mean.
-Vec3 boundary_step(const LabelField& field, Vec3 p, std::span<const TissueId> tissues) {
-  const std::size_t n = std::min(tissues.size(), kMaxTissues);
-  std::array<double, kMaxTissues> share;
-  std::array<Vec3, kMaxTissues> gradient;
-  field.evaluate(p, tissues.first(n), std::span(share).first(n), std::span(gradient).first(n));
-  double mean_share = 0;
-  Vec3 mean_gradient;
-  for (std::size_t i = 0; i < n; ++i) {
-    mean_share += share[i] / static_cast<double>(n);
-    mean_gradient += (1.0 / static_cast<double>(n)) * gradient[i];
-  }
-  Mat3 normal = {};
-  Vec3 rhs;
-  for (std::size_t i = 0; i < n; ++i) {
-    const Vec3 g = gradient[i] - mean_gradient;
-    rhs -= (share[i] - mean_share) * g;
-    for (std::size_t r = 0; r < 3; ++r) {
-      for (std::size_t c = 0; c < 3; ++c) normal[r][c] += g[r] * g[c];
-    }
-  }
-  const double trace = normal[0][0] + normal[1][1] + normal[2][2];
-  const Vec3 spacing = field.image().spacing_mm;
-  const double voxel = std::max({spacing.x, spacing.y, spacing.z});
-  if (trace * voxel * voxel < 1e-6) return {};  // far from the boundary: no direction to go
-  for (std::size_t r = 0; r < 3; ++r) normal[r][r] += 0.01 * trace;
-  const Vec3 step = solve_symmetric(normal, rhs);
-  // No farther than half a voxel along any axis: the field changes within one.
-  const double voxels =
-      std::max({std::abs(step.x) / spacing.x, std::abs(step.y) / spacing.y, std::abs(step.z) / spacing.z});
-  return voxels > 0.5 ? (0.5 / voxels) * step : step;
-}
-
-void settle(TissueMesh& mesh, const MeshTopology& topology, const AngleGuard& guard, const LabelField& field,
+void settle(TissueMesh& mesh, const MeshTopology& topology, const AngleGuard& guard, const SurfaceField& field,
             int sweeps, const Stage& stage) {
+  Settling settling(mesh, topology, guard, field);
   for (int sweep = 0; sweep < sweeps; ++sweep) {
-    for_each_vertex_by_colour(topology, stage, [&](VertexId v) {
-      const auto tissues = topology.tissues_of_vertex[v];
-      if (!topology.on_interface(v) || touches_tiny_tissue(tissues, field.image())) return;
-      const Vec3 from = mesh.points_mm[v];
-      const Vec3 relaxed = from + 0.5 * (mean_of_interface_neighbours(mesh, topology, v) - from);
-      if (!is_on_its_side(mesh, topology, field, v, relaxed)) return;
-      const Vec3 goal = on_boundary(field, relaxed, tissues);
-      if (guard.advance(v, goal, 2) == 0) guard.advance(v, on_boundary(field, from, tissues), 3);
-    });
+    if (sweep > 0) settling.keep_volumes();
+    settling.find_planes();
+    for_each_vertex_by_colour(topology, stage, [&](VertexId v) { settling.settle_vertex(v); });
     relax_interior(mesh, topology, guard, stage);
     stage.at(static_cast<double>(sweep + 1) / sweeps);
   }

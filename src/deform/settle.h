@@ -1,23 +1,18 @@
-// Settling: the last step of the deformation puts every interface vertex on the sub-voxel boundary of its tissues.
+// Settling: the last step of the deformation lays the interfaces smoothly along the sub-voxel boundaries of their
+// tissues.
 #pragma once
 
 #include "base/stage.h"
-#include "boundary/label_field.h"
+#include "boundary/surface_field.h"
 #include "deform/angle_guard.h"
 
 namespace anatomesh {
 
-/// Displacement (mm) that brings a point to where the smoothed shares of its tissues are equal, to first order: a point
-/// of the surface between two tissues, of the junction line of three, the meeting point of four.
-Vec3 boundary_step(const LabelField& field, Vec3 p, std::span<const TissueId> tissues);
-
-/// Whether the tissues around p lie on the sides where the mesh has them at v: false on the far side of a thin sheet,
-/// where stepping to the boundary would turn the sheet inside out.
-bool is_on_its_side(const TissueMesh& mesh, const MeshTopology& topology, const LabelField& field, VertexId v, Vec3 p);
-
-/// Relaxes interface vertices along their surface or junction line and puts them on the boundary, under the guard;
-/// vertices inside make room. `sweeps` times.
-void settle(TissueMesh& mesh, const MeshTopology& topology, const AngleGuard& guard, const LabelField& field,
+/// Moves interface vertices so that the faces around them straddle the boundary of their two tissues and lie along it,
+/// and evenly along their surface or junction line, under the guard; vertices inside make room. `sweeps` times; fewer
+/// do where the mesh lies near the boundary already. Faces at the border of the original image go onto that border.
+/// Vertices of tissues of fewer than eight voxels stay.
+void settle(TissueMesh& mesh, const MeshTopology& topology, const AngleGuard& guard, const SurfaceField& field,
             int sweeps, const Stage& stage);
 
 }  // namespace anatomesh

@@ -114,6 +114,7 @@ TissueImage make_tissue_image(const LabelImage& image, const std::vector<Label>&
   }
   std::size_t total = 1;
   for (std::size_t a = 0; a < 3; ++a) {
+    tissues.whole[a] = static_cast<std::int64_t>(image.size[a]);
     tissues.first[a] = static_cast<std::int64_t>(all.box.lo[a]) - TissueImage::kBorder;
     tissues.size[a] = static_cast<int>(all.box.hi[a] - all.box.lo[a] + 1) + 2 * TissueImage::kBorder;
     total *= static_cast<std::size_t>(tissues.size[a]);

@@ -1,9 +1,11 @@
 // The label image as the mesher works on it: cropped, in dense 16-bit tissue numbers.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "anatomesh/label_image.h"
@@ -23,6 +25,7 @@ struct TissueImage {
 
   std::array<int, 3> size = {0, 0, 0};
   std::array<std::int64_t, 3> first = {0, 0, 0};  ///< index in the original image of voxel (0, 0, 0); may be negative
+  std::array<std::int64_t, 3> whole = {0, 0, 0};  ///< size of the original image, voxels
   Vec3 spacing_mm = {1, 1, 1};
   std::vector<TissueId> voxels;       ///< i fastest
   std::vector<Label> labels;          ///< labels[t]: value of tissue t; labels[0] == 0
@@ -40,6 +43,15 @@ struct TissueImage {
   }
   /// Tissue at (i, j, k), background outside the crop.
   TissueId at_or_background(int i, int j, int k) const { return contains(i, j, k) ? at(i, j, k) : TissueId{0}; }
+  /// Voxels [first, second) of the crop along an axis are those inside the original image.
+  std::pair<int, int> inside(std::size_t axis) const {
+    const std::int64_t n = size[axis];
+    return {static_cast<int>(std::clamp<std::int64_t>(-first[axis], 0, n)),
+            static_cast<int>(std::clamp<std::int64_t>(whole[axis] - first[axis], 0, n))};
+  }
+  /// Where the original image ends along an axis: half a voxel before its first and past its last voxel centre.
+  double low_border_mm(std::size_t axis) const { return -0.5 * spacing_mm[axis]; }
+  double high_border_mm(std::size_t axis) const { return (static_cast<double>(whole[axis]) - 0.5) * spacing_mm[axis]; }
   Vec3 centre_mm(int i, int j, int k) const {
     return {static_cast<double>(first[0] + i) * spacing_mm.x, static_cast<double>(first[1] + j) * spacing_mm.y,
             static_cast<double>(first[2] + k) * spacing_mm.z};

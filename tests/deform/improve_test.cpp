@@ -48,7 +48,7 @@ struct Case {
   explicit Case(const LabelImage& labels)
       : image(make_tissue_image(labels)), field(image), mesh(testing::lattice_of(image)) {}
   TissueImage image;
-  LabelField field;
+  SurfaceField field;
   TissueMesh mesh;
 
   std::size_t coarsen(double surface_tolerance_mm) {

@@ -2,106 +2,99 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
-#include <random>
+#include <numbers>
 
 #include "base/vec.h"
+#include "deform/deform.h"
+#include "deform/interface_faces.h"
+#include "deform/lattice_of.h"
 #include "support/test_images.h"
 
 namespace anatomesh {
 namespace {
 
-std::vector<Vec3> random_points(Vec3 centre, double reach) {
-  std::mt19937 random(8);
-  std::uniform_real_distribution<double> offset(-reach, reach);
-  std::vector<Vec3> points(200);
-  for (Vec3& p : points) {
-    const double x = offset(random), y = offset(random), z = offset(random);
-    p = centre + Vec3{x, y, z};
+DeformOptions strict_bounds() {
+  DeformOptions options;
+  options.min_dihedral_deg = 20;
+  options.max_dihedral_deg = 150;
+  return options;
+}
+
+TissueMesh deformed(const TissueImage& image) {
+  TissueMesh mesh = testing::lattice_of(image);
+  deform(mesh, image, strict_bounds(), testing::quiet_stage());
+  return mesh;
+}
+
+/// Volume of each tissue in the mesh over that of its voxels, less 1.
+std::vector<double> volume_errors(const TissueMesh& mesh, const TissueImage& image) {
+  std::vector<double> volume(image.labels.size());
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    const auto& v = mesh.tets[t];
+    volume[mesh.tissues[t]] +=
+        six_volumes(mesh.points_mm[v[0]], mesh.points_mm[v[1]], mesh.points_mm[v[2]], mesh.points_mm[v[3]]) / 6;
   }
-  return points;
+  const Vec3 s = image.spacing_mm;
+  for (std::size_t t = 0; t < volume.size(); ++t)
+    volume[t] = volume[t] / (static_cast<double>(image.counts[t]) * s.x * s.y * s.z) - 1;
+  return volume;
 }
 
-Vec3 after_steps(const LabelField& field, Vec3 p, std::vector<TissueId> tissues, int steps = 40) {
-  for (int n = 0; n < steps; ++n) p += boundary_step(field, p, tissues);
-  return p;
-}
-
-/// Difference of the largest and the smallest share of the tissues at p.
-double spread_of_shares(const LabelField& field, Vec3 p, const std::vector<TissueId>& tissues) {
-  std::vector<double> shares(tissues.size());
-  std::vector<Vec3> gradients(tissues.size());
-  field.evaluate(p, tissues, shares, gradients);
-  const auto [least, most] = std::minmax_element(shares.begin(), shares.end());
-  return *most - *least;
-}
-
-void expect_convergence_to_a_plane(Vec3 spacing_mm) {
-  LabelImage image =
-      testing::make_image({20, 20, 20}, [](int i, int, int) { return static_cast<Label>(i < 10 ? 1 : 2); });
-  image.spacing_mm = spacing_mm;
-  const TissueImage tissues = make_tissue_image(image);
-  const LabelField field(tissues);
-  const Vec3 on_plane = {9.5 * spacing_mm.x, 10 * spacing_mm.y, 10 * spacing_mm.z};
-  int converged = 0;
-  for (const Vec3 from : random_points(on_plane, spacing_mm.x)) {
-    const Vec3 to = after_steps(field, from, {1, 2});
-    converged += std::abs(to.x - on_plane.x) < 1e-3;
-    EXPECT_NEAR(to.y, from.y, 1e-6);
-    EXPECT_NEAR(to.z, from.z, 1e-6);
-  }
-  EXPECT_EQ(converged, 200) << "of 200 points within a voxel of the plane";
-}
-
-TEST(BoundaryStep, ConvergesToThePlaneBetweenTwoTissues) { expect_convergence_to_a_plane({1, 1, 1}); }
-
-TEST(BoundaryStep, ConvergesToAPlaneAcrossTheShortAxisOfTheVoxels) { expect_convergence_to_a_plane({0.7, 1.1, 2.5}); }
-
-TEST(BoundaryStep, ConvergesToAPlaneAcrossTheLongAxisOfTheVoxels) { expect_convergence_to_a_plane({2.5, 1.1, 0.7}); }
-
-TEST(BoundaryStep, ConvergesToTheSurfaceOfABall) {
-  const TissueImage tissues = make_tissue_image(testing::sphere(9));
-  const LabelField field(tissues);
-  for (const Vec3 direction : random_points({0, 0, 0}, 1)) {
-    const Vec3 centre = {11, 11, 11};
-    const Vec3 to = after_steps(field, centre + (9.0 / norm(direction)) * direction, {0, 1});
-    EXPECT_LT(spread_of_shares(field, to, {0, 1}), 1e-3);
-    EXPECT_NEAR(norm(to - centre), 9.2, 0.6);
-  }
-}
-
-TEST(BoundaryStep, ConvergesToTheJunctionLineOfThreeTissues) {
-  const LabelImage image = testing::make_image({20, 20, 20}, [](int i, int j, int) {
-    return static_cast<Label>(i < 10 ? 1 : j < 10 ? 2 : 3);
+LabelImage ellipsoid(Vec3 semi_axes) {
+  return testing::make_image({32, 32, 32}, [&](int i, int j, int k) {
+    const Vec3 p = {(i - 15.5) / semi_axes.x, (j - 15.5) / semi_axes.y, (k - 15.5) / semi_axes.z};
+    return static_cast<Label>(norm(p) < 1 ? 1 : 0);
   });
-  const TissueImage tissues = make_tissue_image(image);
-  const LabelField field(tissues);
-  for (const Vec3 from : random_points({9.5, 9.5, 10}, 0.9)) {
-    const Vec3 to = after_steps(field, from, {1, 2, 3});
-    EXPECT_LT(spread_of_shares(field, to, {1, 2, 3}), 1e-3);
-    EXPECT_NEAR(to.x, 9.5, 0.6);
-    EXPECT_NEAR(to.y, 9.5, 1e-3);
-    EXPECT_NEAR(to.z, from.z, 1e-6);
+}
+
+LabelImage ring(double radius, double thickness) {
+  return testing::make_image({32, 32, 32}, [&](int i, int j, int k) {
+    const double out = std::hypot(i - 15.5, j - 15.5) - radius;
+    return static_cast<Label>(std::hypot(out, k - 15.5) < thickness ? 1 : 0);
+  });
+}
+
+TEST(Settle, TissuesOfMoreThan5000VoxelsKeepTheirVolume) {
+  const std::vector<testing::NamedImage> images = {
+      {"ball", testing::sphere(12)},
+      {"ellipsoid", ellipsoid({14.5, 12, 8})},
+      {"ring", ring(9.5, 5)},
+  };
+  for (const auto& [name, labels] : images) {
+    SCOPED_TRACE(name);
+    const TissueImage image = make_tissue_image(labels);
+    const std::vector<double> errors = volume_errors(deformed(image), image);
+    for (std::size_t t = 1; t < errors.size(); ++t) {
+      if (image.counts[t] <= 5000) continue;
+      EXPECT_LT(std::abs(errors[t]), 0.02) << "tissue " << t;
+    }
   }
 }
 
-TEST(BoundaryStep, StaysFarFromTheBoundary) {
-  const TissueImage tissues = make_tissue_image(testing::sphere(9));
-  const LabelField field(tissues);
-  const std::vector<TissueId> pair = {0, 1};
-  EXPECT_EQ(boundary_step(field, {11, 11, 11}, pair), Vec3{});
-  EXPECT_EQ(boundary_step(field, {-50, 11, 11}, pair), Vec3{});
+TEST(Settle, ALineOneVoxelWideKeepsItsVolume) {
+  const TissueImage image = make_tissue_image(testing::make_image(
+      {24, 24, 24}, [](int i, int j, int k) { return static_cast<Label>(i > 2 && i < 21 && j == 12 && k == 12); }));
+  EXPECT_GT(volume_errors(deformed(image), image)[1], -0.3);
 }
 
-TEST(BoundaryStep, IsAtMostHalfAVoxelAlongEachAxis) {
-  const TissueImage tissues = make_tissue_image(testing::anisotropic(testing::noise(1)));
-  const LabelField field(tissues);
-  const std::vector<TissueId> three = {1, 2, 3};
-  for (const Vec3 p : random_points({3, 4, 10}, 5)) {
-    const Vec3 step = boundary_step(field, p, three);
-    for (std::size_t a = 0; a < 3; ++a) EXPECT_LE(std::abs(step[a]), 0.5 * tissues.spacing_mm[a] + 1e-9);
+TEST(Settle, FacesAtTheBorderOfTheImageAreFlatAndOnIt) {
+  // A tissue that fills the lower half of the image, with a ball of background in it.
+  const TissueImage image = make_tissue_image(testing::make_image({20, 20, 20}, [](int i, int j, int k) {
+    return static_cast<Label>(k < 10 && std::hypot(i - 9.5, j - 9.5, k - 4.0) > 4);
+  }));
+  const TissueMesh mesh = deformed(image);
+  const MeshTopology topology = make_topology(mesh);
+  std::size_t faces = 0, exact = 0;
+  for (const InterfaceFace& face : find_interface_faces(mesh, topology, image).faces) {
+    if (!face.border) continue;
+    for (const VertexId v : face.vertices) {
+      ++faces;
+      exact += mesh.points_mm[v][face.border->axis] == face.border->position_mm;
+    }
   }
+  EXPECT_GT(faces, 100u);
+  EXPECT_GT(exact, faces * 8 / 10);
 }
 
 }  // namespace
