@@ -1,18 +1,16 @@
-// After CGAL 5.5's examples mesh_3D_image.cpp, mesh_3D_weighted_image.cpp and
-// mesh_3D_image_with_custom_initialization.cpp.
+// After CGAL 5.5's examples mesh_3D_image.cpp and mesh_3D_weighted_image.cpp.
 #include "benchmarks/cgal_mesh_3/cgal_mesher.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Labeled_mesh_domain_3.h>
 #include <CGAL/Mesh_3/generate_label_weights.h>
-#include <CGAL/Mesh_3/initialize_triangulation_from_labeled_image.h>
 #include <CGAL/Mesh_complex_3_in_triangulation_3.h>
 #include <CGAL/Mesh_criteria_3.h>
 #include <CGAL/Mesh_triangulation_3.h>
 #include <CGAL/make_mesh_3.h>
+#include <CGAL/version.h>
 
 #include <chrono>
-#include <cstdint>
 #include <unordered_map>
 #include <utility>
 
@@ -36,21 +34,13 @@ Domain make_domain(const CgalImage& crop, const CGAL::Image_3& weights) {
                                                   named::weights = weights);
 }
 
-Complex make_complex(const CgalImage& crop, const Domain& domain, const CgalOptions& options) {
+Complex make_complex(const Domain& domain, const CgalOptions& options) {
   const Criteria criteria(named::facet_angle = options.facet_angle_deg, named::facet_size = options.facet_size_mm,
                           named::facet_distance = options.facet_distance_mm,
                           named::cell_radius_edge_ratio = options.cell_radius_edge_ratio,
                           named::cell_size = options.cell_size_mm);
-  const auto perturb = named::perturb(named::sliver_bound = options.sliver_bound_deg);
-  const auto exude = named::exude(named::sliver_bound = options.sliver_bound_deg);
-  if (!options.seed_components) return CGAL::make_mesh_3<Complex>(domain, criteria, perturb, exude);
-  Complex complex;
-  if (crop.wide)
-    initialize_triangulation_from_labeled_image(complex, domain, crop.image, criteria, std::uint16_t{0});
-  else
-    initialize_triangulation_from_labeled_image(complex, domain, crop.image, criteria, std::uint8_t{0});
-  CGAL::refine_mesh_3(complex, domain, criteria, perturb, exude);
-  return complex;
+  return CGAL::make_mesh_3<Complex>(domain, criteria, named::perturb(named::sliver_bound = options.sliver_bound_deg),
+                                    named::exude(named::sliver_bound = options.sliver_bound_deg));
 }
 
 Vec3 to_physical(const LabelImage& image, const CgalImage& crop, const Triangulation::Point& point) {
@@ -97,6 +87,8 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
 
 }  // namespace
 
+const char* cgal_version() { return CGAL_STRINGIZE(CGAL_VERSION); }
+
 TetMesh mesh_with_cgal(const LabelImage& image, const CgalOptions& options, CgalTimes& times) {
   const CgalImage crop = make_cgal_image(image);
   auto begin = std::chrono::steady_clock::now();
@@ -106,7 +98,7 @@ TetMesh mesh_with_cgal(const LabelImage& image, const CgalOptions& options, Cgal
   times.weights_s = seconds_since(begin);
   begin = std::chrono::steady_clock::now();
   const Domain domain = make_domain(crop, weights);
-  const Complex complex = make_complex(crop, domain, options);
+  const Complex complex = make_complex(domain, options);
   times.mesh_s = seconds_since(begin);
   TetMesh mesh = to_mesh(image, crop, complex);
   if (mesh.tets.empty()) throw MeshingFailed("CGAL gave no tetrahedron");

@@ -15,7 +15,6 @@ struct CgalOptions {
   double cell_size_mm = 4;            ///< largest circumradius of a tetrahedron
   double weights_sigma_mm = 0;        ///< of the Gaussian that makes the label weights; 0: no weights
   double sliver_bound_deg = 0;        ///< perturbation and exudation stop there; 0: CGAL's default, as far as they can
-  bool seed_components = false;       ///< start from points on every component, as CGAL's example of a custom start
 };
 
 /// What a run took besides the mesh.
@@ -23,6 +22,9 @@ struct CgalTimes {
   double weights_s = 0;  ///< wall seconds of the label weights
   double mesh_s = 0;     ///< wall seconds of the mesher and its optimisers
 };
+
+/// CGAL's version, e.g. "5.5.1".
+const char* cgal_version();
 
 /// Meshes all labels but 0; the mesh lies in the image's physical space (LPS, mm) and carries the image's labels.
 /// The image is cropped to its labelled voxels and four voxels of background, since CGAL takes the space beyond

@@ -34,7 +34,6 @@ void add_options(CLI::App& app, Arguments& a) {
   app.add_option("--weights-sigma", o.weights_sigma_mm, "mm; of the weights [the largest voxel spacing]");
   app.add_option("--sliver-bound", o.sliver_bound_deg, "degrees; where the optimisers stop, 0: as far as they can")
       ->capture_default_str();
-  app.add_flag("--seed-components", o.seed_components, "start from points on every component of the image");
 }
 
 double cpu_seconds(const rusage& usage) {
@@ -59,6 +58,7 @@ void run(Arguments& a) {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   const nlohmann::ordered_json line = {
+      {"cgal", cgal_version()},
       {"tets", mesh.tets.size()},
       {"vertices", mesh.points_mm.size()},
       {"wall_s", std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()},
