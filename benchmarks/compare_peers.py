@@ -26,6 +26,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tools"))
 from measured_run import run_limited  # noqa: E402
+from mesh_figures import LARGE_TISSUE_VOX, SMALL_TISSUE_VOX, figures  # noqa: E402
 from pages import replace_between  # noqa: E402
 
 MRICRON = pathlib.Path("/usr/share/mricron/templates")
@@ -42,10 +43,7 @@ IMAGES = {"crtc_i2m_ventricles.nii.gz": None, "crtc_i2m_nidus.nii.gz": None, "cr
 PEERS = {"cgal": [], "cgal_weights": ["--weights"]}
 TITLES = {"ours": "**Anatomesh**", "cgal": "CGAL", "cgal_weights": "CGAL, weights"}
 
-SAME_COUNT = 0.10      # of our number of tetrahedra
-LARGE_TISSUE_VOX = 5000  # from which distances and volumes are promised
-SMALL_TISSUE_VOX = 50    # up to which the number of parts is not
-
+SAME_COUNT = 0.10  # of our number of tetrahedra
 BEGIN, END = "<!-- comparison:begin -->", "<!-- comparison:end -->"
 
 
@@ -56,43 +54,14 @@ def judge(program, mesh, image, log):
     out = mesh.with_suffix(".check.json")
     out.unlink(missing_ok=True)
     run_limited([program, "check", mesh, "--image", image, "--json", out, "--quiet"], log)
+    if not out.exists():
+        return {"failed": "the mesh could not be checked"}
     return figures(json.loads(out.read_text(encoding="utf-8"))["assessment"])
 
 
-def figures(assessment):
-    quality, summary = assessment["whole"]["quality"], assessment["summary"]
-    tissues = [t for t in assessment["tissues"] if t["in_image"]]
-    large = [t for t in tissues if t["fidelity"]["image_voxels"] > LARGE_TISSUE_VOX]
-    counted = [t for t in tissues if t["fidelity"]["image_voxels"] > SMALL_TISSUE_VOX]
-    return {
-        "tets": quality["tets"],
-        "dihedral_deg": [quality["min_dihedral_deg"], quality["max_dihedral_deg"]],
-        "dihedral_p1_deg": quality["dihedral_p1_deg"],
-        "mean_ratio": [quality["min_mean_ratio"], quality["mean_mean_ratio"]],
-        "dice": [summary["min_dice"], summary["mean_dice"]],
-        "surface_mm": [summary["surface_mean_mm"], summary["surface_p95_worst_mm"]],
-        "large_surface_mm": [worst(large, lambda t: t["fidelity"]["distance"]["mean_mm"]),
-                             worst(large, lambda t: t["fidelity"]["distance"]["p95_mm"])],
-        "large_volume_percent": worst(large, lambda t: t["fidelity"]["volume_error_percent"]),
-        "normal_jump_deg": summary["normal_jump_mean_deg"],
-        "nonmanifold": [summary["nonmanifold_edges"], summary["nonmanifold_vertices"]],
-        "wrong_parts": sum(t["topology"]["tet_components"] != t["topology"]["image_components_26"] for t in counted),
-        "missing_labels": len(summary["missing_labels"]),
-        "tissues": len(tissues),
-    }
-
-
-def worst(tissues, value):
-    """Of the largest magnitude; None where there is none or it could not be measured (a tissue that is missing)."""
-    values = [value(t) for t in tissues]
-    return None if not values or None in values else max(values, key=abs)
-
-
-def image_facts(program, image):
+def spacing_of(program, image):
     text = subprocess.run([program, "info", image], check=True, capture_output=True, text=True).stdout
-    spacing = [float(x) for x in re.search(r"^spacing mm\s+(.*)$", text, re.M).group(1).split()]
-    volume_ml = sum(float(line.split()[2]) for line in text[text.index("\nlabel "):].strip().splitlines()[1:])
-    return {"spacing_mm": spacing, "volume_mm3": 1000 * volume_ml}
+    return [float(x) for x in re.search(r"^spacing mm\s+(.*)$", text, re.M).group(1).split()]
 
 
 def failure(done, timeout_s, log):
@@ -102,12 +71,12 @@ def failure(done, timeout_s, log):
     return (lines[-1][:120] if lines else "no message") + f" (exit status {done.status})"
 
 
-def measure_ours(arguments, image, facts, folder):
+def measure_ours(arguments, image, spacing_mm, folder):
     mesh, log = folder / "ours.vtu", folder / "ours.log"
     log.unlink(missing_ok=True)
     options = shlex.split(arguments.options)
     if times := IMAGES.get(image.name):
-        options += ["--bcc-size", f"{times * sum(facts['spacing_mm']) / 3:.6g}"]
+        options += ["--bcc-size", f"{times * sum(spacing_mm) / 3:.6g}"]
     done = run_limited([arguments.program, "mesh", image, "-o", mesh, "--quiet", *options], log, arguments.timeout,
                        arguments.memory)
     if done.status != 0:
@@ -177,9 +146,9 @@ def measure_image(arguments, image, row):
     folder = arguments.out / image.name.split(".")[0]
     folder.mkdir(parents=True, exist_ok=True)
     print(image.name, flush=True)
-    row["image"] = facts = image_facts(arguments.program, image)
+    row["spacing_mm"] = spacing_of(arguments.program, image)
     if "ours" not in row or arguments.refresh in ("ours", "all"):
-        row["ours"] = measure_ours(arguments, image, facts, folder)
+        row["ours"] = measure_ours(arguments, image, row["spacing_mm"], folder)
         print(f"    ours: {row['ours'].get('failed') or format(row['ours']['tets'], ',')}", flush=True)
     if "failed" in row["ours"]:
         return
@@ -188,7 +157,7 @@ def measure_image(arguments, image, row):
         old = row.get(name, {})
         if old and arguments.refresh not in ("peers", "all") and ("failed" in old or off(old["tets"], wanted) <= SAME_COUNT):
             continue
-        first = 1.3 * (facts["volume_mm3"] / wanted) ** (1 / 3)
+        first = 1.3 * (row["ours"]["image_volume_mm3"] / wanted) ** (1 / 3)
         if "size_mm" in old:
             first = old["size_mm"] * (old["tets"] / wanted) ** 0.4
         row[name] = measure_cgal(arguments, image, wanted, first, options, folder, name)
@@ -256,20 +225,20 @@ def comparison_table(rows):
     return text
 
 
-PROMISES = [  # title, what holds of our figures and the image's facts, what to show
-    ("20°–150°", lambda f, i: f["dihedral_deg"][0] >= 20 and f["dihedral_deg"][1] <= 150,
-     lambda f, i: f"{f['dihedral_deg'][0]:.1f}–{f['dihedral_deg'][1]:.1f}"),
-    ("1 % ≥ 22°", lambda f, i: f["dihedral_p1_deg"] >= 22, lambda f, i: number(f["dihedral_p1_deg"], 1)),
-    ("mean ratio ≥ 0.3", lambda f, i: f["mean_ratio"][0] >= 0.3, lambda f, i: number(f["mean_ratio"][0], 3)),
-    ("distance mean ≤ 0.3 voxels", lambda f, i: at_most(f["large_surface_mm"][0], 0.3 * max(i["spacing_mm"])),
-     lambda f, i: in_voxels(f["large_surface_mm"][0], i)),
-    ("95 % ≤ 1 voxel", lambda f, i: at_most(f["large_surface_mm"][1], max(i["spacing_mm"])),
-     lambda f, i: in_voxels(f["large_surface_mm"][1], i)),
-    ("volume ±1 %", lambda f, i: at_most(f["large_volume_percent"], 1),
-     lambda f, i: number(f["large_volume_percent"], 1)),
-    ("manifold", lambda f, i: f["nonmanifold"] == [0, 0], lambda f, i: "{} / {}".format(*f["nonmanifold"])),
-    ("parts", lambda f, i: f["wrong_parts"] == 0, lambda f, i: str(f["wrong_parts"])),
-    ("labels", lambda f, i: f["missing_labels"] == 0, lambda f, i: str(f["missing_labels"])),
+PROMISES = [  # title, what must hold of our figures and the voxel spacing, what to show
+    ("20°–150°", lambda f, s: f["dihedral_deg"][0] >= 20 and f["dihedral_deg"][1] <= 150,
+     lambda f, s: f"{f['dihedral_deg'][0]:.1f}–{f['dihedral_deg'][1]:.1f}"),
+    ("1 % ≥ 22°", lambda f, s: f["dihedral_p1_deg"] >= 22, lambda f, s: number(f["dihedral_p1_deg"], 1)),
+    ("mean ratio ≥ 0.3", lambda f, s: f["mean_ratio"][0] >= 0.3, lambda f, s: number(f["mean_ratio"][0], 3)),
+    ("distance mean ≤ 0.3 voxels", lambda f, s: at_most(f["large_surface_mm"][0], 0.3 * max(s)),
+     lambda f, s: in_voxels(f["large_surface_mm"][0], s)),
+    ("95 % ≤ 1 voxel", lambda f, s: at_most(f["large_surface_mm"][1], max(s)),
+     lambda f, s: in_voxels(f["large_surface_mm"][1], s)),
+    ("volume ±1 %", lambda f, s: at_most(f["large_volume_percent"], 1),
+     lambda f, s: number(f["large_volume_percent"], 1)),
+    ("manifold", lambda f, s: f["nonmanifold"] == [0, 0], lambda f, s: "{} / {}".format(*f["nonmanifold"])),
+    ("parts", lambda f, s: f["wrong_parts"] == 0, lambda f, s: str(f["wrong_parts"])),
+    ("labels", lambda f, s: f["missing_labels"] == 0, lambda f, s: str(f["missing_labels"])),
 ]
 
 
@@ -277,17 +246,17 @@ def at_most(value, bound):
     return value is None or abs(value) <= bound
 
 
-def in_voxels(value, facts):
-    return number(None if value is None else value / max(facts["spacing_mm"]), 2)
+def in_voxels(value, spacing_mm):
+    return number(None if value is None else value / max(spacing_mm), 2)
 
 
 def promises_table(rows):
     text = "| image | " + " | ".join(title for title, _, _ in PROMISES) + " |\n" + "|---" * (len(PROMISES) + 1) + "|\n"
     for image in ordered(rows):
-        ours, facts = rows[image].get("ours", {"failed": ""}), rows[image]["image"]
+        ours, spacing = rows[image].get("ours", {"failed": ""}), rows[image]["spacing_mm"]
         if "failed" in ours:
             continue
-        cells = [show(ours, facts) if holds(ours, facts) else f"**{show(ours, facts)}**" for _, holds, show in PROMISES]
+        cells = [show(ours, spacing) if holds(ours, spacing) else f"**{show(ours, spacing)}**" for _, holds, show in PROMISES]
         text += f"| {image.split('.')[0]} | " + " | ".join(cells) + " |\n"
     return text
 

@@ -69,7 +69,7 @@ def tubes_from(begin, direction, radius, turn):
 
 def tree():
     root = np.array([SIZE_MM[0] / 2, SIZE_MM[1] / 2, -2 * ROOT_RADIUS_MM])
-    return tubes_from(root, np.array([0.0, 0.0, 1.0]), ROOT_RADIUS_MM, 0.4)
+    return tubes_from(root, np.array([0.0, 0.0, 1.0]), ROOT_RADIUS_MM, math.pi / 2)
 
 
 def draw_tube(voxels, spacing, tube):
