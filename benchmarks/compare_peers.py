@@ -75,7 +75,7 @@ def measure_ours(arguments, image, spacing_mm, folder):
     mesh, log = folder / "ours.vtu", folder / "ours.log"
     log.unlink(missing_ok=True)
     options = shlex.split(arguments.options)
-    if times := IMAGES.get(image.name):
+    if "--bcc-size" not in options and (times := IMAGES.get(image.name)):
         options += ["--bcc-size", f"{times * sum(spacing_mm) / 3:.6g}"]
     done = run_limited([arguments.program, "mesh", image, "-o", mesh, "--quiet", *options], log, arguments.timeout,
                        arguments.memory)
@@ -205,7 +205,7 @@ COLUMNS = [  # title, how to show it
 
 def table_row(image, key, row):
     found = row.get(key, {"failed": "not measured"})
-    cells = [image, TITLES[key]]
+    cells = [image, TITLES[key] + (f" `{found['options']}`" if found.get("options") else "")]
     if "failed" in found:
         return "| " + " | ".join([*cells, found["failed"].replace("|", "/")] + [""] * len(COLUMNS)) + " |\n"
     words = better_at(found, row["ours"]) if key != "ours" and "failed" not in row["ours"] else []

@@ -3,7 +3,7 @@
 
 usage: make_docs_pictures.py [--program PATH] [--only NAME ...] [--keep FOLDER] [--list]
 
-A brain (AAL, Debian's mricron-data) and a vessel tree (tools/make_vessel_tree.py) are meshed once for each set of options
+A brain (AAL, Debian's mricron-data, every second voxel) and a vessel tree (tools/make_vessel_tree.py) are meshed once for each set of options
 in the table below. A picture whose options the program does not know yet is left out, with a message. Needs
 python3-vtk9, python3-matplotlib, python3-nibabel and python3-pil, and a display or xvfb-run. --keep holds the meshes
 of an earlier run of the same program, so that only the pictures are drawn again.
@@ -38,7 +38,8 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs/surfaces.md"
 AAL = pathlib.Path("/usr/share/mricron/templates/aal.nii.gz")
 
-LARGEST_PICTURE_BYTES = 85_000  # of some 20 pictures: 1.5 MB at most
+LARGEST_PICTURE_BYTES = 115_000
+LARGEST_TOTAL_BYTES = 1_500_000
 PANEL_PIXELS = 360
 COLOURS = (64, 32, 16, 8)  # of the palette: as many as the size allows
 
@@ -55,9 +56,9 @@ class View(typing.NamedTuple):
 
 
 VIEWS = {
-    "brain": {"surface": View("surface", (90, 100, 80), 85, (1.0, -0.35, 0.25)),
-              "cut": View("cut", (72, 108, 78), 34),
-              "slice": View("slice", (68, 110, 78), 24)},
+    "brain": {"surface": View("surface", (45, 54, 44), 46, (1.0, -0.35, 0.25)),
+              "cut": View("cut", (50, 54, 42), 20),
+              "slice": View("slice", (55, 54, 38), 17)},
     "vessels": {"surface": View("surface", (53, 53, 56), 59, (0.3, -1.0, 0.2), only=VESSEL),
                 "near": View("surface", (53, 53, 36), 20, (0.3, -1.0, 0.2), only=VESSEL),
                 "cut": View("cut", (53, 53, 36), 36),
@@ -83,13 +84,13 @@ PICTURES = [
             "The fidelity of the undeformed lattice, as in the paper, and that of the final mesh."),
     Picture("stage-vessels", "vessels", "surface", ("--fidelity-stage lattice", "--fidelity-stage final"),
             "The same for the vessels."),
-    Picture("budget-brain", "brain", "cut", ("--max-elements 100000", "--max-elements 200000", ""),
+    Picture("budget-brain", "brain", "cut", ("--max-elements 50000", "--max-elements 100000", ""),
             "The best mesh within a budget of elements, and the mesh without one."),
     Picture("budget-vessels", "vessels", "surface", ("--max-elements 30000", "--max-elements 60000", ""),
             "A budget spends its elements where the fidelity is lowest."),
     Picture("label-vessels", "vessels", "cut", ("--fidelity 0.8", "--fidelity 0.8 --fidelity-label 2=0.97"),
             "A coarse mesh of the block, and the same with a fidelity of its own for the vessels."),
-    Picture("sizes-brain", "brain", "cut", ("--bcc-size 16 --min-size 4", "--bcc-size 8 --min-size 2", "--bcc-size 16 --min-size 2"),
+    Picture("sizes-brain", "brain", "cut", ("--bcc-size 32 --min-size 8", "--bcc-size 16 --min-size 4", "--bcc-size 32 --min-size 4"),
             "`--bcc-size` is the size of the elements deep inside, `--min-size` that of the smallest at the tissues' borders."),
     Picture("sizes-vessels", "vessels", "surface", ("--min-size 2.4", "--min-size 1.2", "--min-size 0.6"),
             "A vessel needs elements smaller than it is thick."),
@@ -114,7 +115,26 @@ PICTURES = [
 ]
 
 
-# Meshes
+# Images and meshes
+
+def inside_filled(voxels):
+    """Background with tissue on all six sides, however far, becomes a tissue of its own."""
+    enclosed = np.ones(voxels.shape, bool)
+    for axis in range(3):
+        for way in (1, -1):
+            order = tuple(slice(None, None, way) if a == axis else slice(None) for a in range(3))
+            enclosed[order] &= np.logical_or.accumulate(voxels[order] != 0, axis=axis)
+    return np.where((voxels == 0) & enclosed, voxels.max() + 1, voxels)
+
+
+def write_images(folder):
+    """The two images. The brain has every second voxel of AAL, so of 2 mm, and what AAL leaves out inside as one tissue."""
+    voxels, _ = read_image(AAL)
+    images = {"brain": folder / "brain.nii.gz", "vessels": folder / "vessels.nii.gz"}
+    write_nifti(images["brain"], inside_filled(voxels[::-2, ::-2, ::2].astype(np.uint8)), 2.0)  # from RAS to LPS
+    write_nifti(images["vessels"], vessel_tree(0.6), 0.6)
+    return images
+
 
 def known_options(program):
     text = subprocess.run([program, "mesh", "--help"], check=True, capture_output=True, text=True).stdout
@@ -231,6 +251,13 @@ def make_picture(picture, program, images, folder):
     print(f"{picture.name}: {path.stat().st_size:,} bytes", flush=True)
 
 
+def check_total():
+    total = sum(path.stat().st_size for path in (PAGE.parent / "images/surfaces").glob("*.png"))
+    print(f"all pictures together: {total:,} bytes")
+    if total > LARGEST_TOTAL_BYTES:
+        sys.exit(f"make_docs_pictures: that is more than {LARGEST_TOTAL_BYTES:,}")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", type=pathlib.Path, default=ROOT / "build/release/bin/anatomesh")
@@ -252,10 +279,10 @@ def main():
     with tempfile.TemporaryDirectory() as temporary:
         folder = arguments.keep or pathlib.Path(temporary)
         folder.mkdir(parents=True, exist_ok=True)
-        images = {"brain": AAL, "vessels": folder / "vessels.nii.gz"}
-        write_nifti(images["vessels"], vessel_tree(0.6), 0.6)
+        images = write_images(folder)
         for picture in chosen:
             make_picture(picture, arguments.program, images, folder)
+    check_total()
 
 
 if __name__ == "__main__":
