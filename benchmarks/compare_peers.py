@@ -208,11 +208,11 @@ def table_row(image, key, row):
     cells = [image, TITLES[key] + (f" `{found['options']}`" if found.get("options") else "")]
     if "failed" in found:
         return "| " + " | ".join([*cells, found["failed"].replace("|", "/")] + [""] * len(COLUMNS)) + " |\n"
-    words = better_at(found, row["ours"]) if key != "ours" and "failed" not in row["ours"] else []
-    verdict = "" if key == "ours" else ("**all three**" if len(words) == 3 else ", ".join(words) or "nothing")
-    cells += [show(found) for _, show in COLUMNS] + [verdict]
-    if key != "ours" and off(found["tets"], row["ours"]["tets"]) > SAME_COUNT:
-        cells[2] += " (!)"
+    cells += [show(found) for _, show in COLUMNS] + [""]
+    if key != "ours" and "tets" in row.get("ours", {}):
+        words = better_at(found, row["ours"])
+        cells[-1] = "**all three**" if len(words) == 3 else ", ".join(words) or "nothing"
+        cells[2] += " (!)" if off(found["tets"], row["ours"]["tets"]) > SAME_COUNT else ""
     return "| " + " | ".join(cells) + " |\n"
 
 
@@ -269,8 +269,10 @@ def ordered(rows):
 def page(rows):
     versions = sorted({row[p]["cgal"] for row in rows.values() for p in PEERS if "cgal" in row.get(p, {})})
     dates = sorted(row["date"] for row in rows.values() if "date" in row)
-    lost = [f"{TITLES[p]} on {image.split('.')[0]}" for image in ordered(rows) for p in PEERS
-            if "tets" in rows[image].get(p, {}) and len(better_at(rows[image][p], rows[image]["ours"])) == 3]
+    compared = [(image, p) for image in ordered(rows) for p in PEERS
+                if all("tets" in rows[image].get(mesh, {}) for mesh in ("ours", p))]
+    lost = [f"{TITLES[p]} on {image.split('.')[0]}" for image, p in compared
+            if len(better_at(rows[image][p], rows[image]["ours"])) == 3]
     verdict = ("On no image is a peer's mesh at once smoother, nearer and better-angled than ours." if not lost else
                "At once smoother, nearer and better-angled than ours: " + "; ".join(lost) + ".")
     measured = f"CGAL {', '.join(versions) or '(none)'}; measured {dates[0]} to {dates[-1]}." if dates else ""

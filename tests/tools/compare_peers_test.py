@@ -71,6 +71,12 @@ class Page(unittest.TestCase):
         self.assertIn("no mesh in 600 s", text)
         self.assertIn("1,200 (!)", text)
 
+    def test_shows_peers_beside_a_failure_of_ours(self):
+        failed = {**row(WORSE, BETTER), "ours": {"failed": "no mesh in 600 s"}}
+        text = compare_peers.page({"a.nrrd": failed})
+        self.assertIn("no mesh in 600 s", text)
+        self.assertIn("5.0–170.0", text)
+
     def test_prints_broken_promises_in_bold(self):
         kept = compare_peers.promises_table({"a.nrrd": row(WORSE, WORSE)})
         self.assertNotIn("**", kept)
