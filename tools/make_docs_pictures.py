@@ -38,10 +38,10 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs/surfaces.md"
 AAL = pathlib.Path("/usr/share/mricron/templates/aal.nii.gz")
 
-LARGEST_PICTURE_BYTES = 115_000
+LARGEST_PICTURE_BYTES = 120_000
 LARGEST_TOTAL_BYTES = 1_500_000
 PANEL_PIXELS = 360
-COLOURS = (64, 32, 16, 8)  # of the palette: as many as the size allows
+COLOURS = (64, 48, 32, 24, 16, 8)  # of the palette: as many as the size allows
 
 
 class View(typing.NamedTuple):
