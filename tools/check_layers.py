@@ -23,8 +23,9 @@ FENCES = [
     ("Eigen", re.compile(r"^(unsupported/)?Eigen/"), ("src/fem",)),
     ("ITK", re.compile(r"^itk"), ("src/io", "plugins")),
     ("VTK", re.compile(r"^vtk"), ("src/io", "plugins")),
-    ("CLI11", re.compile(r"^CLI/"), ("apps",)),
-    ("JSON", re.compile(r"^nlohmann/"), ("apps",)),
+    ("CGAL", re.compile(r"^CGAL/"), ("benchmarks",)),
+    ("CLI11", re.compile(r"^CLI/"), ("apps", "benchmarks")),
+    ("JSON", re.compile(r"^nlohmann/"), ("apps", "benchmarks")),
     ("fmt", re.compile(r"^(fmt|spdlog)/"), ("apps",)),
 ]
 

@@ -2,19 +2,49 @@
 import json
 import os
 import pathlib
+import resource
+import signal
 import subprocess
 import tempfile
+import threading
 import time
+import typing
+
+
+class Run(typing.NamedTuple):
+    """What became of a command."""
+    status: int  # negative: the signal that ended it
+    wall_s: float
+    cpu_s: float
+    memory_mb: float  # at its peak
+    timed_out: bool
+
+
+def run_limited(arguments, log, timeout_s=None, memory_gib=None):
+    """Runs a command, its output appended to the file `log`; kills it after `timeout_s`, and lets it have no more
+    address space than `memory_gib`."""
+    def limit_memory():
+        resource.setrlimit(resource.RLIMIT_AS, (int(memory_gib * 2**30),) * 2)
+
+    begin = time.monotonic()
+    with open(log, "ab") as stream:
+        process = subprocess.Popen([str(a) for a in arguments], stdout=stream, stderr=stream,
+                                   preexec_fn=limit_memory if memory_gib else None)
+        killer = threading.Timer(timeout_s or threading.TIMEOUT_MAX, process.kill)
+        killer.daemon = True
+        killer.start()
+        _, status, usage = os.wait4(process.pid, 0)
+        killer.cancel()
+    process.returncode = os.waitstatus_to_exitcode(status)
+    wall_s = time.monotonic() - begin
+    timed_out = process.returncode == -signal.SIGKILL and timeout_s is not None and wall_s >= timeout_s
+    return Run(process.returncode, wall_s, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024, timed_out)
 
 
 def run(arguments, log):
     """(exit status, seconds, peak memory in MB) of a command; its output goes to the file `log`."""
-    begin = time.monotonic()
-    with open(log, "ab") as stream:
-        process = subprocess.Popen([str(a) for a in arguments], stdout=stream, stderr=stream)
-        _, status, usage = os.wait4(process.pid, 0)
-    process.returncode = os.waitstatus_to_exitcode(status)
-    return process.returncode, time.monotonic() - begin, usage.ru_maxrss / 1024
+    done = run_limited(arguments, log)
+    return done.status, done.wall_s, done.memory_mb
 
 
 def measure(program, image, options, folder):

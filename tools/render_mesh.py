@@ -53,10 +53,10 @@ def colour_by_tissue(mesh):
     mesh.GetCellData().SetActiveScalars("colour")
 
 
-def cut_open(mesh, direction):
-    """The surface of the tetrahedra that lie behind the plane through the middle."""
+def cut_open(mesh, direction, origin=None):
+    """The surface of the tetrahedra that lie behind the plane through `origin`, or else through the middle."""
     plane = vtk.vtkPlane()
-    plane.SetOrigin(mesh.GetCenter())
+    plane.SetOrigin(origin if origin is not None else mesh.GetCenter())
     plane.SetNormal(direction)
     behind = vtk.vtkExtractGeometry()
     behind.SetInputData(mesh)
@@ -69,10 +69,10 @@ def cut_open(mesh, direction):
     return surface.GetOutput()
 
 
-def renderer_for(mesh, view, edges):
-    direction, up = VIEWS[view]
+def renderer_for(surface, direction, up, edges):
+    """Draws faces in their colours, seen from `direction`; the caller sets up the rest of the camera."""
     mapper = vtk.vtkPolyDataMapper()
-    mapper.SetInputData(cut_open(mesh, direction))
+    mapper.SetInputData(surface)
     mapper.SetColorModeToDirectScalars()
     mapper.SetScalarModeToUseCellFieldData()
     mapper.SelectColorArray("colour")
@@ -88,25 +88,39 @@ def renderer_for(mesh, view, edges):
     renderer.SetBackground(1, 1, 1)
     renderer.AddActor(actor)
     camera = renderer.GetActiveCamera()
-    camera.SetFocalPoint(mesh.GetCenter())
-    camera.SetPosition(np.array(mesh.GetCenter()) + np.array(direction))
+    camera.SetPosition(direction)
+    camera.SetFocalPoint(0, 0, 0)
     camera.SetViewUp(up)
     camera.ParallelProjectionOn()
-    renderer.ResetCamera(mesh.GetBounds())
-    camera.Zoom(1.35 if view != "corner" else 1.25)
-    renderer.ResetCameraClippingRange()
     return renderer
 
 
-def render(mesh, views, size, edges, path):
-    columns = 2 if len(views) > 1 else 1
-    rows = (len(views) + columns - 1) // columns
+def show_all(renderer, bounds, zoom):
+    renderer.ResetCamera(bounds)
+    renderer.GetActiveCamera().Zoom(zoom)
+    renderer.ResetCameraClippingRange()
+
+
+def show_ball(renderer, centre, radius):
+    """Fills the picture's height with a ball, whose middle the camera looks at."""
+    renderer.ResetCamera()  # moves the camera out of what is drawn
+    camera = renderer.GetActiveCamera()
+    away = 3 * (np.array(camera.GetPosition()) - np.array(camera.GetFocalPoint()))
+    camera.SetFocalPoint(centre)
+    camera.SetPosition(np.array(centre) + away)
+    camera.SetParallelScale(radius)
+    renderer.ResetCameraClippingRange()
+
+
+def draw(renderers, size):
+    """One picture of renderers two by two (a single one alone), as a vtkImageData; `size`: pixels of a side of each."""
+    columns = 2 if len(renderers) > 1 else 1
+    rows = (len(renderers) + columns - 1) // columns
     window = vtk.vtkRenderWindow()
     window.OffScreenRenderingOn()
     window.SetMultiSamples(0)
     window.SetSize(size * columns * FINER, size * rows * FINER)
-    for number, view in enumerate(views):
-        renderer = renderer_for(mesh, view, edges)
+    for number, renderer in enumerate(renderers):
         column, row = number % columns, rows - 1 - number // columns
         renderer.SetViewport(column / columns, row / rows, (column + 1) / columns, (row + 1) / rows)
         window.AddRenderer(renderer)
@@ -115,15 +129,25 @@ def render(mesh, views, size, edges, path):
     grab.SetInput(window)
     grab.ReadFrontBufferOff()
     grab.Update()
+    if vtk_to_numpy(grab.GetOutput().GetPointData().GetScalars()).std() < 1:
+        sys.exit("render_mesh: the picture is empty; is there an OpenGL (libgl1-mesa-dri) and a display (xvfb-run)?")
     shrink = vtk.vtkImageShrink3D()
     shrink.SetInputConnection(grab.GetOutputPort())
     shrink.SetShrinkFactors(FINER, FINER, 1)
     shrink.MeanOn()
-    if vtk_to_numpy(grab.GetOutput().GetPointData().GetScalars()).std() < 1:
-        sys.exit("render_mesh: the picture is empty; is there an OpenGL (libgl1-mesa-dri) and a display (xvfb-run)?")
+    shrink.Update()
+    return shrink.GetOutput()
+
+
+def render(mesh, views, size, edges, path):
+    renderers = []
+    for view in views:
+        direction, up = VIEWS[view]
+        renderers.append(renderer_for(cut_open(mesh, direction), direction, up, edges))
+        show_all(renderers[-1], mesh.GetBounds(), 1.35 if view != "corner" else 1.25)
     writer = vtk.vtkPNGWriter()
     writer.SetFileName(path)
-    writer.SetInputConnection(shrink.GetOutputPort())
+    writer.SetInputData(draw(renderers, size))
     writer.Write()
 
 

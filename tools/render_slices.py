@@ -110,6 +110,7 @@ def cut(points, triangles, axis, position):
 
 
 def draw(axes, voxels, spacing, segments, axis, centre, half):
+    """One slice at centre[axis], the tissues pale, the segments in black; `half`: voxels shown around the centre."""
     rows, columns = [a for a in range(3) if a != axis][::-1]
     values = np.unique(voxels)
     palette = np.vstack([[1, 1, 1], 0.35 + 0.65 * tissue_colours(len(values) - (values[0] == 0))])
@@ -119,9 +120,14 @@ def draw(axes, voxels, spacing, segments, axis, centre, half):
     if half:
         axes.set_xlim(centre[columns] - half, centre[columns] + half)
         axes.set_ylim(centre[rows] - half, centre[rows] + half)
-    axes.set_title(f"{'ijk'[axis]} = {int(round(centre[axis]))}")
-    axes.set_xlabel("ijk"[columns])
-    axes.set_ylabel("ijk"[rows])
+
+
+def index_points(mesh, affine, frame="lps"):
+    """The mesh's vertices in voxels of the image."""
+    points = vtk_to_numpy(mesh.GetPoints().GetData()).astype(float)
+    if frame == "ras":
+        points = points * [-1, -1, 1]
+    return (points - affine[:3, 3]) @ np.linalg.inv(affine[:3, :3]).T
 
 
 def main():
@@ -137,10 +143,7 @@ def main():
     voxels, affine = read_image(arguments.image)
     voxels = voxels.astype(np.int64)
     mesh = read_mesh(arguments.mesh)
-    points = vtk_to_numpy(mesh.GetPoints().GetData()).astype(float)
-    if arguments.frame == "ras":
-        points = points * [-1, -1, 1]
-    index = (points - affine[:3, 3]) @ np.linalg.inv(affine[:3, :3]).T
+    index = index_points(mesh, affine, arguments.frame)
     labelled = np.argwhere(voxels)
     middle = (labelled.min(axis=0) + labelled.max(axis=0)) / 2
     centre = np.array(arguments.box[:3] if arguments.box else arguments.at or middle)
@@ -151,6 +154,8 @@ def main():
     for axis, panel in enumerate(panels):
         segments = cut(index, triangles, axis, round(centre[axis]))
         draw(panel, voxels, spacing, segments, axis, centre, arguments.box[3] if arguments.box else None)
+        rows, columns = [a for a in range(3) if a != axis][::-1]
+        panel.set(title=f"{'ijk'[axis]} = {int(round(centre[axis]))}", xlabel="ijk"[columns], ylabel="ijk"[rows])
     figure.suptitle(f"{arguments.image.name} and {pathlib.Path(arguments.mesh).name}")
     figure.tight_layout()
     figure.savefig(arguments.picture)

@@ -12,6 +12,7 @@ import sys
 import tempfile
 
 from measured_run import measure, stage_seconds
+from pages import replace_between
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 BEGIN, END = "<!-- results:begin -->", "<!-- results:end -->"
@@ -62,12 +63,6 @@ def table(program, folder):
     return rows
 
 
-def rewrite(path, rows):
-    text = path.read_text(encoding="utf-8")
-    begin, end = text.index(BEGIN) + len(BEGIN), text.index(END)
-    path.write_text(text[:begin] + "\n" + rows + text[end:], encoding="utf-8")
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("folder", type=pathlib.Path)
@@ -77,7 +72,7 @@ def main():
     rows = table(arguments.program, arguments.folder)
     print(rows)
     if not arguments.print:
-        rewrite(ROOT / "README.md", rows)
+        replace_between(ROOT / "README.md", BEGIN, END, rows)
         print("results_table: README.md is rewritten")
 
 
