@@ -178,8 +178,8 @@ void add_deform_options(CLI::App& command, DeformOptions& deform) {
                                {"none", NonConnectivity::none}},
                               deform.non_connectivity);
   add_number(command, "--iterations", "N", "deformation iterations; 0 keeps the lattice [10]", deform.iterations);
-  add_number(command, "--gradation", "G", "largest ratio of neighbouring edges, above 1; 0: not asked [0]",
-             deform.gradation);
+  add_number(command, "--gradation", "G",
+             "mm that edges may be longer a mm farther from the surfaces, e.g. 0.5; 0: no limit [0]", deform.gradation);
   add_bound_options(command, deform.min_dihedral_deg, deform.max_dihedral_deg, deform.min_mean_ratio);
 }
 
@@ -206,8 +206,8 @@ void add_mesh_options(CLI::App& command, MeshRequest& request) {
 }
 
 void add_bound_options(CLI::App& command, double& min_dihedral_deg, double& max_dihedral_deg, double& min_mean_ratio) {
-  add_number(command, "--min-dihedral", "DEG", "smallest dihedral angle, 0 to 30 [15]", min_dihedral_deg);
-  add_number(command, "--max-dihedral", "DEG", "largest dihedral angle, 117 to 180 [155]", max_dihedral_deg);
+  add_number(command, "--min-dihedral", "DEG", "smallest dihedral angle, 0 to 30 [20]", min_dihedral_deg);
+  add_number(command, "--max-dihedral", "DEG", "largest dihedral angle, 117 to 180 [150]", max_dihedral_deg);
   add_number(command, "--min-mean-ratio", "R", "smallest mean ratio of a tetrahedron, 0 to 0.5 [0.3]", min_mean_ratio);
 }
 

@@ -185,8 +185,8 @@ struct AssessOptions {
   bool distances = true;     ///< measure the surface distances (most of the time goes there)
 
   // Bounds of failed_guarantees(); rounding of coordinates is forgiven: 1e-6 degrees, 1e-9 of the mean ratio.
-  double min_dihedral_deg = 15;
-  double max_dihedral_deg = 155;
+  double min_dihedral_deg = 20;
+  double max_dihedral_deg = 150;
   double min_mean_ratio = 0.3;
 };
 

@@ -48,11 +48,11 @@ struct LatticeOptions {
 /// Stage "deform": registration onto the boundary, angle guard, settling.
 struct DeformOptions {
   NonConnectivity non_connectivity = NonConnectivity::face;
-  int iterations = 10;                 ///< >= 0; 0 keeps the lattice
-  double min_dihedral_deg = 15;        ///< 0 to 30
-  double max_dihedral_deg = 155;       ///< 117 to 180
-  double min_mean_ratio = 0.3;         ///< 0 to 0.5; 12 (3 V)^(2/3) / sum of squared edges, 1: regular
-  double gradation = 0;                ///< largest ratio of neighbouring edges, > 1; 0: not asked
+  int iterations = 10;            ///< >= 0; 0 keeps the lattice
+  double min_dihedral_deg = 20;   ///< 0 to 30
+  double max_dihedral_deg = 150;  ///< 117 to 180
+  double min_mean_ratio = 0.3;    ///< 0 to 0.5; 12 (3 V)^(2/3) / sum of squared edges, 1: regular
+  double gradation = 0;           ///< mm that edges may be longer a mm farther from the interfaces, > 0; 0: no limit
   std::map<Label, Material> material;  ///< of single tissues; the rest takes default_material
   Material default_material;
 };

@@ -80,6 +80,7 @@ void check_options(const Options& o) {
       {"bcc_size_mm", l.bcc_size_mm, 0, kInfinity, true, false},
       {"min_size_mm", l.min_size_mm, 0, kInfinity, true, false},
       {"fidelity", l.fidelity, 0, 1, false, true},
+      {"gradation", d.gradation, 0, kInfinity, true, false},
       {"elements_across", static_cast<double>(l.elements_across), 0, 16, true, true},
       {"iterations", static_cast<double>(d.iterations), 0, 1000, true, true},
       {"min_dihedral_deg", d.min_dihedral_deg, 0, 30, true, true},
@@ -90,7 +91,6 @@ void check_options(const Options& o) {
       {"default_material young_modulus_pa", d.default_material.young_modulus_pa, 0, kInfinity, false, false},
       {"default_material poisson_ratio", d.default_material.poisson_ratio, 0, 0.5, true, false},
   };
-  if (d.gradation != 0) ranges.push_back({"gradation", d.gradation, 1, kInfinity, false, false});
   for (const auto& [label, size] : l.size_label) ranges.push_back({"size_label", size, 0, kInfinity, false, false});
   for (const auto& [label, fidelity] : l.fidelity_label)
     ranges.push_back({"fidelity_label", fidelity, 0, 1, false, true});
