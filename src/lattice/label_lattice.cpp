@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string>
 
 #include "base/parallel.h"
@@ -68,9 +69,11 @@ struct Demand {
   bool thin = false;    // the volume of its tetrahedra is far from that of its voxels: it lies between their centres
 };
 
-class LabelLattice {
+}  // namespace
+
+class LabelLattice::Impl {
  public:
-  LabelLattice(const TissueImage& image, const LatticePlan& plan)
+  Impl(const TissueImage& image, const LatticePlan& plan)
       : image_(image),
         plan_(plan),
         target_(plan.fidelity),
@@ -78,12 +81,15 @@ class LabelLattice {
         lattice_(place_.cells, deepest_level(place_, plan)),
         votes_(image, lattice_, place_.origin_mm, place_.unit_mm) {}
 
-  /// Returns whether anything was refined.
-  bool refine_until_faithful(const Stage& stage);
-  LabelledLattice extract(const Stage& stage) const;
-  void raise_targets(const std::vector<LatticeFidelity>& reached);
+  LabelledLattice build(const Stage& stage);
+  std::optional<LabelledLattice> refine(const FidelityGap& gap, const Stage& stage);
 
  private:
+  /// Returns whether anything was refined.
+  bool refine_until_faithful(const Stage& stage);
+  std::vector<TetRef> leaves_to_mend(const FidelityGap& gap) const;
+  LabelledLattice extract(const Stage& stage) const;
+  void raise_targets(const std::vector<LatticeFidelity>& reached);
   void collect_leaves();
   std::vector<LatticeFidelity> inherited_fidelity() const;
   std::vector<Demand> demands() const;
@@ -103,12 +109,12 @@ class LabelLattice {
 
 // Calls visit(vote, nodes, part) for a leaf, or for each of its green parts.
 template <class Visit>
-void LabelLattice::visit_parts(const VotedLeaf& leaf, const Visit& visit) const {
+void LabelLattice::Impl::visit_parts(const VotedLeaf& leaf, const Visit& visit) const {
   const GreenSplit& split = green_split(lattice_.split_edges(leaf.tet));
   for (std::size_t c = 0; c < static_cast<std::size_t>(split.count); ++c) visit(leaf.votes[c], split.tets[c], c);
 }
 
-void LabelLattice::collect_leaves() {
+void LabelLattice::Impl::collect_leaves() {
   leaves_.clear();
   for (int level = 0; level <= lattice_.max_level(); ++level) {
     for (std::uint32_t slot = 0; slot < lattice_.slot_count(level); ++slot) {
@@ -126,7 +132,7 @@ void LabelLattice::collect_leaves() {
 }
 
 // Voxels of the pure tetrahedra that handed their label down without counting.
-std::vector<LatticeFidelity> LabelLattice::inherited_fidelity() const {
+std::vector<LatticeFidelity> LabelLattice::Impl::inherited_fidelity() const {
   std::vector<LatticeFidelity> fidelity(image_.labels.size());
   for (std::size_t t = 0; t < fidelity.size(); ++t) fidelity[t].voxels = image_.counts[t];
   for (int level = 0; level < lattice_.max_level(); ++level) {
@@ -140,13 +146,17 @@ std::vector<LatticeFidelity> LabelLattice::inherited_fidelity() const {
   return fidelity;
 }
 
+namespace {
+
 // A tissue this far below its fidelity at the smallest size is thinner than it: it gets one level more.
 constexpr double kFarShort = 0.15;
 // So does one whose volume is off by this share more than 1 - F, and one more at twice of it. Where a tissue is one
 // voxel thick, voxel centres alone would call the lattice faithful.
 constexpr double kFarOff = 0.25;
 
-std::vector<Demand> LabelLattice::demands() const {
+}  // namespace
+
+std::vector<Demand> LabelLattice::Impl::demands() const {
   std::vector<LatticeFidelity> fidelity = inherited_fidelity();
   std::vector<Demand> demands(fidelity.size(), {0, true, false});
   std::vector<double> volume_mm3(fidelity.size(), 0);
@@ -179,7 +189,7 @@ std::vector<Demand> LabelLattice::demands() const {
 
 // A leaf is refined when the boundary of a tissue that falls short passes between its voxels, or when it holds
 // a voxel of a tissue that no tetrahedron has taken yet or that is too thin to show between voxel centres.
-bool LabelLattice::wants_refinement(TetRef leaf, const std::vector<Demand>& demands) const {
+bool LabelLattice::Impl::wants_refinement(TetRef leaf, const std::vector<Demand>& demands) const {
   const auto voxels = votes_.voxels(leaf);
   if (voxels.empty()) return false;
   const TissueId first = image_.voxels[voxels[0]];
@@ -194,7 +204,7 @@ bool LabelLattice::wants_refinement(TetRef leaf, const std::vector<Demand>& dema
   return (mixed || holds_hidden) && leaf.level < limit;
 }
 
-bool LabelLattice::refine_until_faithful(const Stage& stage) {
+bool LabelLattice::Impl::refine_until_faithful(const Stage& stage) {
   for (int round = 0;; ++round) {
     collect_leaves();
     stage.check_cancelled();
@@ -213,13 +223,15 @@ bool LabelLattice::refine_until_faithful(const Stage& stage) {
 }
 
 // What the removal of label noise took from a tissue is asked for on top.
-void LabelLattice::raise_targets(const std::vector<LatticeFidelity>& reached) {
+void LabelLattice::Impl::raise_targets(const std::vector<LatticeFidelity>& reached) {
   constexpr double kMargin = 0.01;
   for (std::size_t t = 1; t < target_.size(); ++t) {
     const double lacking = plan_.fidelity[t] - std::min(reached[t].f1(), reached[t].f2());
     if (lacking > 0) target_[t] = std::min(1.0, target_[t] + lacking + kMargin);
   }
 }
+
+namespace {
 
 // Nodes 0 .. 9 of a leaf (vertices, edge midpoints), in units of the finest level.
 std::array<LatticePoint, 10> leaf_nodes(const RedGreenLattice& lattice, TetRef leaf) {
@@ -258,7 +270,9 @@ struct Extraction {
   }
 };
 
-LabelledLattice LabelLattice::extract(const Stage& stage) const {
+}  // namespace
+
+LabelledLattice LabelLattice::Impl::extract(const Stage& stage) const {
   Extraction taken;
   std::uint32_t tissue_vertices = 0;
   for (const bool cushion : {false, true}) {
@@ -299,21 +313,62 @@ LabelledLattice LabelLattice::extract(const Stage& stage) const {
   return result;
 }
 
-}  // namespace
-
-LabelledLattice build_labelled_lattice(const TissueImage& image, const LatticePlan& plan, const Stage& stage) {
+LabelledLattice LabelLattice::Impl::build(const Stage& stage) {
   constexpr int kAttempts = 3;
-  LabelLattice lattice(image, plan);
   stage.at(0.15);
   LabelledLattice result;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    if (!lattice.refine_until_faithful(stage) && attempt > 0) break;
+    if (!refine_until_faithful(stage) && attempt > 0) break;
     stage.check_cancelled();
-    result = lattice.extract(stage);
-    lattice.raise_targets(result.fidelity);
+    result = extract(stage);
+    raise_targets(result.fidelity);
   }
   stage.at(1);
   return result;
+}
+
+// The leaves with most wrong voxels first, until those taken hold as many as each tissue has to mend.
+std::vector<TetRef> LabelLattice::Impl::leaves_to_mend(const FidelityGap& gap) const {
+  std::vector<std::uint32_t> wrong(leaves_.size(), 0);
+  parallel_for(leaves_.size(), [&](std::size_t i) {
+    if (leaves_[i].tet.level >= lattice_.max_level()) return;
+    for (const std::uint32_t v : votes_.voxels(leaves_[i].tet)) wrong[i] += gap.wrong[v] != 0;
+  });
+  std::vector<std::uint32_t> order;
+  for (std::uint32_t i = 0; i < leaves_.size(); ++i) {
+    if (wrong[i] > 0) order.push_back(i);
+  }
+  std::ranges::stable_sort(order, std::greater<>(), [&](std::uint32_t i) { return wrong[i]; });
+  std::vector<std::uint64_t> open = gap.to_mend;
+  std::vector<TetRef> marked;
+  for (const std::uint32_t i : order) {
+    bool wanted = false;
+    for (const std::uint32_t v : votes_.voxels(leaves_[i].tet)) {
+      const TissueId t = gap.wrong[v];
+      if (t == 0 || open[t] == 0 || leaves_[i].tet.level >= plan_.levels) continue;
+      --open[t];
+      wanted = true;
+    }
+    if (wanted) marked.push_back(leaves_[i].tet);
+  }
+  return marked;
+}
+
+std::optional<LabelledLattice> LabelLattice::Impl::refine(const FidelityGap& gap, const Stage& stage) {
+  const std::vector<TetRef> marked = leaves_to_mend(gap);
+  if (marked.empty()) return std::nullopt;
+  votes_.descend(lattice_.refine(marked));
+  collect_leaves();
+  stage.check_cancelled();
+  return extract(stage);
+}
+
+LabelLattice::LabelLattice(const TissueImage& image, const LatticePlan& plan)
+    : impl_(std::make_unique<Impl>(image, plan)) {}
+LabelLattice::~LabelLattice() = default;
+LabelledLattice LabelLattice::build(const Stage& stage) { return impl_->build(stage); }
+std::optional<LabelledLattice> LabelLattice::refine(const FidelityGap& gap, const Stage& stage) {
+  return impl_->refine(gap, stage);
 }
 
 }  // namespace anatomesh

@@ -4,6 +4,8 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "base/stage.h"
@@ -35,11 +37,37 @@ struct LabelledLattice {
   std::vector<LatticeFidelity> fidelity;  ///< by tissue, [0] unused
 };
 
-/// Builds it. Every voxel centre of the image belongs to exactly one tetrahedron (of the whole lattice,
-/// background included). A tetrahedron takes the label that most of its voxels have; one with fewer than ten
-/// voxels takes it from the image interpolated at a few points inside (the paper's local up-sampling,
-/// here for all tetrahedra whose vote would be noise, not only for empty ones).
-/// Throws InvalidInput (lattice too large for its coordinates), Cancelled.
-LabelledLattice build_labelled_lattice(const TissueImage& image, const LatticePlan& plan, const Stage& stage);
+/// Where the final mesh is wrong, and how much of it must be mended.
+struct FidelityGap {
+  std::vector<TissueId> wrong;         ///< by voxel: the tissue that its wrong label costs fidelity, 0 where right
+  std::vector<std::uint64_t> to_mend;  ///< by tissue: how many of its wrong voxels have to become right
+};
+
+/// The lattice over one image, from its first refinement to the last. Every voxel centre of the image belongs to
+/// exactly one tetrahedron (of the whole lattice, background included). A tetrahedron takes the label that most of its
+/// voxels have; one with fewer than ten voxels takes it from the image interpolated at a few points inside (the
+/// paper's local up-sampling, here for all tetrahedra whose vote would be noise, not only for empty ones).
+///
+/// Holds references to the image and the plan, which must outlive it.
+class LabelLattice {
+ public:
+  /// Throws InvalidInput (lattice too large for its coordinates).
+  LabelLattice(const TissueImage& image, const LatticePlan& plan);
+  ~LabelLattice();
+  LabelLattice(const LabelLattice&) = delete;
+  LabelLattice& operator=(const LabelLattice&) = delete;
+
+  /// Refines until each tissue has the plan's fidelity on the lattice, or the smallest size is reached. Throws
+  /// Cancelled.
+  LabelledLattice build(const Stage& stage);
+
+  /// Refines the tetrahedra that hold the most wrong voxels, as many as it takes to hold those that have to be mended,
+  /// and labels the lattice again. Nothing when all of them are of the smallest size. Throws Cancelled.
+  std::optional<LabelledLattice> refine(const FidelityGap& gap, const Stage& stage);
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace anatomesh

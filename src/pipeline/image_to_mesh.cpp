@@ -156,7 +156,8 @@ Result image_to_mesh(const LabelImage& image, const Options& options, const Prog
   watch.stage_done("labels");
 
   const LatticePlan plan = make_plan(tissues, result.options.lattice);
-  LabelledLattice lattice = build_labelled_lattice(tissues, plan, Stage(progress, "lattice", 0.05, 0.3));
+  LabelLattice builder(tissues, plan);
+  LabelledLattice lattice = builder.build(Stage(progress, "lattice", 0.05, 0.3));
   watch.stage_done("lattice");
 
   if (options.deform.iterations > 0) {

@@ -18,7 +18,7 @@ inline TissueMesh lattice_of(const TissueImage& image) {
   LatticePlan plan;
   plan.bcc_size_mm = 8 * (image.spacing_mm.x + image.spacing_mm.y + image.spacing_mm.z) / 3;
   plan.fidelity.assign(image.labels.size(), 0.95);
-  return build_labelled_lattice(image, plan, quiet_stage()).mesh;
+  return LabelLattice(image, plan).build(quiet_stage()).mesh;
 }
 
 /// The worst shape of the tissues' tetrahedra alone.

@@ -26,7 +26,7 @@ LatticePlan plan_for(const TissueImage& image, double bcc_size_mm, double fideli
 
 LabelledLattice build(const TissueImage& image, const LatticePlan& plan) {
   const Progress progress;
-  return build_labelled_lattice(image, plan, Stage(progress, "lattice", 0, 1));
+  return LabelLattice(image, plan).build(Stage(progress, "lattice", 0, 1));
 }
 
 /// The shapes, and anisotropic versions of some.
@@ -287,7 +287,8 @@ TEST(LabelLattice, StopsWhenAskedTo) {
                             if (fraction > 0.1) source.request_stop();
                           },
                           source.get_token()};
-  EXPECT_THROW(build_labelled_lattice(image, plan_for(image, 8, 0.95), Stage(progress, "lattice", 0, 1)), Cancelled);
+  const LatticePlan plan = plan_for(image, 8, 0.95);
+  EXPECT_THROW(LabelLattice(image, plan).build(Stage(progress, "lattice", 0, 1)), Cancelled);
 }
 
 }  // namespace
