@@ -226,7 +226,8 @@ void PieceMender::seed_absent_components() {
   for (std::size_t c = 0; c < home_.size(); ++c) {
     const TissueId tissue = components_.list()[c].tissue;
     if (!open_[tissue] || home_[c] != kNone) continue;
-    any = absent_in[tissue] = 1;
+    absent_in[tissue] = 1;
+    any = true;
     ++repair_.wrong;
   }
   if (!any) return;

@@ -192,13 +192,12 @@ std::vector<VertexId> singular_vertices(const TetComplex& complex) {
 
 bool neighbours_hang_together(const TetComplex& complex, TetId t) {
   const TissueId own = complex.tissue(t);
-  std::vector<TetId> around, reached;
+  std::vector<TetId> around, wanted;
   for (const TetId other : complex.behind[t]) {
-    if (other != t && complex.tissue(other) == own) reached.push_back(other);
+    if (other != t && complex.tissue(other) == own) wanted.push_back(other);
   }
-  if (reached.size() < 2) return true;
-  const std::vector<TetId> wanted = reached;
-  reached.resize(1);
+  if (wanted.size() < 2) return true;
+  std::vector<TetId> reached = {wanted.front()};
   for (const VertexId v : complex.mesh.tets[t]) {
     for (const TetId other : complex.tets_of_vertex[v]) {
       if (other != t && complex.tissue(other) == own) around.push_back(other);

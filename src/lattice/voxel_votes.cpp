@@ -182,12 +182,15 @@ const VoxelVotes::GreenVoxels& VoxelVotes::voxels_of_green_parts(TetRef leaf) co
   return parts;
 }
 
+std::span<const std::uint32_t> VoxelVotes::voxels_of_part(TetRef leaf, std::size_t part) const {
+  if (lattice_.split_edges(leaf) == 0) return voxels(leaf);
+  return voxels_of_green_parts(leaf)[part];
+}
+
 std::uint32_t VoxelVotes::voxels_of(TetRef leaf, std::size_t part, TissueId tissue) const {
-  const auto has_tissue = [&](std::uint32_t v) { return image_.voxels[v] == tissue; };
-  const std::span<const std::uint32_t> all = lattice_.split_edges(leaf) == 0
-                                                 ? voxels(leaf)
-                                                 : std::span<const std::uint32_t>(voxels_of_green_parts(leaf)[part]);
-  return static_cast<std::uint32_t>(std::count_if(all.begin(), all.end(), has_tissue));
+  const auto all = voxels_of_part(leaf, part);
+  return static_cast<std::uint32_t>(
+      std::count_if(all.begin(), all.end(), [&](std::uint32_t v) { return image_.voxels[v] == tissue; }));
 }
 
 std::array<Vote, 4> VoxelVotes::green_votes(TetRef leaf) const {

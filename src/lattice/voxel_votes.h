@@ -44,6 +44,10 @@ class VoxelVotes {
   /// Votes of the green parts of a leaf with split edges, in the order of green_split().
   std::array<Vote, 4> green_votes(TetRef leaf) const;
 
+  /// Voxels of a leaf (part 0 of one without split edges) or of one of its green parts, as offsets in the image. Good
+  /// until the thread's next call.
+  std::span<const std::uint32_t> voxels_of_part(TetRef leaf, std::size_t part) const;
+
   /// Voxels of a tissue in a leaf (part 0 of one without split edges) or in one of its green parts.
   std::uint32_t voxels_of(TetRef leaf, std::size_t part, TissueId tissue) const;
 
