@@ -15,7 +15,7 @@ void LabelledLeaves::collect(NewLabels new_labels) {
     if (!old.empty()) places[static_cast<std::size_t>(level)].assign(lattice_.slot_count(level), kNone);
     for (std::uint32_t slot = 0; slot < lattice_.slot_count(level); ++slot) {
       const TetRef t = {level, slot};
-      if (lattice_.is_leaf(t)) leaves_.push_back({t, static_cast<std::uint8_t>(lattice_.split_edges(t)), false, {}});
+      if (lattice_.is_leaf(t)) leaves_.push_back({.tet = t, .split_edges = static_cast<std::uint8_t>(lattice_.split_edges(t)), .votes = {}});
     }
   }
   for (std::uint32_t i = 0; i < old.size(); ++i)
@@ -32,6 +32,7 @@ void LabelledLeaves::label(LabelledLeaf& leaf, const std::vector<LabelledLeaf>& 
   const bool stayed = from != kNone;
   if (stayed && old[from].split_edges == leaf.split_edges) {
     leaf = old[from];
+    leaf.fresh = false;
     return;
   }
   leaf.votes = leaf.split_edges == 0 ? std::array<Vote, 4>{votes_.vote(leaf.tet)} : votes_.green_votes(leaf.tet);
@@ -41,7 +42,7 @@ void LabelledLeaves::label(LabelledLeaf& leaf, const std::vector<LabelledLeaf>& 
       lattice_.find(ancestor.level - 1, bcc_parent(lattice_.barycentre(ancestor)), ancestor);
       from = place(ancestor);
     }
-    if (from != kNone) inherit(leaf, old[from]);
+    if (from != kNone && !old[from].revote) inherit(leaf, old[from]);
   } else if (stayed && old[from].decided) {
     inherit(leaf, old[from]);
   }

@@ -15,6 +15,8 @@ struct LabelledLeaf {
   TetRef tet;
   std::uint8_t split_edges = 0;
   bool decided = false;  ///< a repair gave some part its tissue, which is then not that of the vote
+  bool fresh = true;     ///< it, or its split, was not there before the last refinement
+  bool revote = false;   ///< what it is refined into votes, even where all else inherits
   std::array<Vote, 4> votes;
 
   const GreenSplit& split() const { return green_split(split_edges); }
@@ -35,6 +37,9 @@ class LabelledLeaves {
   /// Lists the leaves of the lattice as it is now. Those that were there before keep their labels; decided ones do
   /// so, by the centres of their parts, also when more of their edges are split now.
   void collect(NewLabels new_labels);
+
+  /// Lets what a leaf is refined into next vote, and forget what was decided.
+  void revote(std::size_t leaf) { leaves_[leaf].revote = true; }
 
   /// Gives a part of a leaf a tissue, from now on.
   void decide(std::size_t leaf, std::uint32_t part, TissueId tissue);

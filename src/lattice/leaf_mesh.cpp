@@ -26,21 +26,29 @@ std::array<LatticePoint, 10> nodes_of(const RedGreenLattice& lattice, TetRef lea
 
 }  // namespace
 
-LeafMesh mesh_of_leaves(const RedGreenLattice& lattice, const std::vector<LabelledLeaf>& leaves, Vec3 origin_mm,
-                        double unit_mm) {
+LeafMesh mesh_of_leaves(const RedGreenLattice& lattice, const VoxelVotes& votes,
+                        const std::vector<LabelledLeaf>& leaves, Vec3 origin_mm, double unit_mm) {
   LeafMesh result;
   LatticePointMap vertices;
-  for (std::uint32_t i = 0; i < leaves.size(); ++i) {
-    const LabelledLeaf& leaf = leaves[i];
-    const auto nodes = nodes_of(lattice, leaf.tet);
-    const bool positive = is_positive(lattice.barycentre(leaf.tet));
-    for (std::uint32_t part = 0; part < static_cast<std::uint32_t>(leaf.split().count); ++part) {
-      std::array<VertexId, 4> tet;
-      for (std::size_t n = 0; n < 4; ++n) tet[n] = vertices.insert(nodes[leaf.split().tets[part][n]]);
-      if (!positive) std::swap(tet[2], tet[3]);
-      result.mesh.tets.push_back(tet);
-      result.mesh.tissues.push_back(leaf.votes[part].tissue);
-      result.origins.push_back({i, part});
+  const auto is_bulk = [&](const LabelledLeaf& leaf) {
+    return leaf.votes[0].tissue == 0 && !leaf.decided && votes.hands_label_down(leaf.tet);
+  };
+  for (const bool bulk : {false, true}) {
+    const std::size_t near = vertices.points().size();
+    for (std::uint32_t i = 0; i < leaves.size(); ++i) {
+      const LabelledLeaf& leaf = leaves[i];
+      if (is_bulk(leaf) != bulk) continue;
+      const auto nodes = nodes_of(lattice, leaf.tet);
+      if (bulk && std::none_of(nodes.begin(), nodes.end(), [&](auto& node) { return vertices.find(node) < near; })) continue;
+      const bool positive = is_positive(lattice.barycentre(leaf.tet));
+      for (std::uint32_t part = 0; part < static_cast<std::uint32_t>(leaf.split().count); ++part) {
+        std::array<VertexId, 4> tet;
+        for (std::size_t n = 0; n < 4; ++n) tet[n] = vertices.insert(nodes[leaf.split().tets[part][n]]);
+        if (!positive) std::swap(tet[2], tet[3]);
+        result.mesh.tets.push_back(tet);
+        result.mesh.tissues.push_back(leaf.votes[part].tissue);
+        result.origins.push_back({i, part});
+      }
     }
   }
   result.points = vertices.points();

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <cstdlib>
 #include <cstdio>
-#include <utility>
 
 #include "base/parallel.h"
 #include "lattice/clean_labels.h"
@@ -14,7 +14,11 @@
 namespace anatomesh {
 namespace {
 
-constexpr int kMaxRounds = 16, kPieceRounds = 8, kRepairsPerRound = 3;
+constexpr int kMaxRounds = 12, kPieceRounds = 8;
+// Refinement ends beyond four times the tetrahedra before it, and these.
+constexpr std::size_t kMinRoom = 200000;
+// A larger tangle of singular vertices is left to the relabelling of single tetrahedra, which now are smaller.
+constexpr std::size_t kMaxGroup = 2000;
 constexpr double kMaxPrice = VoxelVotes::kQuorum / 2;
 
 void record(const TissueMesh& mesh, const std::vector<LeafMesh::Origin>& origins, LabelledLeaves& leaves) {
@@ -39,16 +43,17 @@ class LatticeMender {
     for (int round = 0;; ++round) {
       stage.check_cancelled();
       take_mesh();
-      std::vector<TetId> marked;
-      if (round < kPieceRounds) marked = mend_pieces_here();
-      NewLabels new_labels = NewLabels::vote;
-      if (marked.empty() && plan_.manifold) {
-        marked = mend_surfaces_here();
-        new_labels = NewLabels::inherit;
-      }
+      std::vector<TetId> changed, marked;
+      mend_around_core(changed);
+      if (round < kPieceRounds) mend_pieces_here(changed, marked);
+      if (plan_.manifold) mend_surfaces_here(round == 0, changed, marked);
+      if (round == 0) max_tets_ = 4 * origins_.size() + kMinRoom;
+      const bool last = marked.empty() || round == kMaxRounds || origins_.size() > max_tets_;
+      if (last && plan_.manifold) untangle();
+      if (getenv("TOPO")) fprintf(stderr, "round %d tets %zu changed %zu marked %zu core %zu\n", round, origins_.size(), changed.size(), marked.size(), core_.points().size());
       record(complex_.mesh, origins_, leaves_);
-      if (marked.empty() || round == kMaxRounds) break;
-      refine(marked, new_labels);
+      if (last) break;
+      refine(marked);
     }
     return {std::move(complex_.mesh), std::move(points_), std::move(origins_)};
   }
@@ -56,12 +61,15 @@ class LatticeMender {
  private:
   void take_mesh();
   TetContents contents() const;
-  std::vector<TetId> mend_pieces_here();
-  std::vector<TetId> mend_surfaces_here();
-  std::vector<TetId> tets_around(const std::vector<VertexId>& singular) const;
+  void mend_pieces_here(std::vector<TetId>& changed, std::vector<TetId>& marked);
+  void mend_around_core(std::vector<TetId>& changed);
+  void mend_surfaces_here(bool all, std::vector<TetId>& changed, std::vector<TetId>& marked);
+  std::vector<VertexId> fresh_vertices(const std::vector<TetId>& changed) const;
+  void mark_around(const std::vector<VertexId>& singular, std::vector<TetId>& marked) const;
   void keep_core(const std::vector<VertexId>& singular);
   std::vector<VertexId> core_vertices() const;
-  void refine(const std::vector<TetId>& marked, NewLabels new_labels);
+  void untangle();
+  void refine(const std::vector<TetId>& marked);
 
   const TissueImage& image_;
   const ImageComponents& components_;
@@ -75,11 +83,12 @@ class LatticeMender {
   std::vector<LatticePoint> points_;
   std::vector<LeafMesh::Origin> origins_;
   TetContents contents_;
+  std::size_t max_tets_ = 0;
   LatticePointMap core_;  // singular vertices before the last refinement, and the middles of the edges between them
 };
 
 void LatticeMender::take_mesh() {
-  LeafMesh taken = mesh_of_leaves(lattice_, leaves_.list(), plan_.origin_mm, plan_.unit_mm);
+  LeafMesh taken = mesh_of_leaves(lattice_, votes_, leaves_.list(), plan_.origin_mm, plan_.unit_mm);
   complex_ = make_complex(std::move(taken.mesh));
   points_ = std::move(taken.points);
   origins_ = std::move(taken.origins);
@@ -110,41 +119,48 @@ TetContents LatticeMender::contents() const {
   return contents;
 }
 
-std::vector<TetId> LatticeMender::mend_pieces_here() {
-  std::vector<TetId> wanted;
-  for (int n = 0; n < kRepairsPerRound; ++n) {
-    const PieceRepair repair = mend_pieces(complex_, pieces_, image_, components_, contents_);
-    if (getenv("TOPO")) fprintf(stderr, "  pieces: wrong %zu changed %zu refine %zu\n", repair.wrong, repair.changed.size(), repair.refine.size());
-    for (const TetId t : repair.changed) contents_.decided[t] = 1;
-    wanted = repair.refine;
-    if (repair.changed.empty()) break;
-  }
-  return wanted;
+// What is marked for the sake of pieces votes anew.
+void LatticeMender::mend_pieces_here(std::vector<TetId>& changed, std::vector<TetId>& marked) {
+  PieceRepair repair = mend_pieces(complex_, pieces_, image_, components_, contents_);
+  changed.insert(changed.end(), repair.changed.begin(), repair.changed.end());
+  marked = std::move(repair.refine);
+  for (const TetId t : marked) leaves_.revote(origins_[t].leaf);
 }
 
-std::vector<TetId> LatticeMender::mend_surfaces_here() {
-  std::vector<TetId> changed;
-  if (!core_.points().empty()) mend_neighbourhoods(complex_, pieces_, core_vertices(), contents_.sizes, changed);
+void LatticeMender::mend_around_core(std::vector<TetId>& changed) {
+  if (core_.points().empty()) return;
+  mend_neighbourhoods(complex_, pieces_, core_vertices(), contents_.sizes, kMaxGroup, changed);
   core_ = {};
-  if (getenv("TOPO")) fprintf(stderr, "  surfaces: tets %zu singular %zu, by core %zu", origins_.size(), singular_vertices(complex_).size(), changed.size());
-  mend_single_tets(complex_, pieces_, voxel_price(complex_, image_, contents_), kMaxPrice, changed);
-  const std::vector<VertexId> singular = singular_vertices(complex_);
-  if (getenv("TOPO")) fprintf(stderr, " left %zu\n", singular.size());
-  std::vector<TetId> marked = tets_around(singular);
-  if (marked.empty()) return marked;
+}
+
+void LatticeMender::mend_surfaces_here(bool all, std::vector<TetId>& changed, std::vector<TetId>& marked) {
+  std::vector<VertexId> singular = all ? singular_vertices(complex_) : singular_among(complex_, fresh_vertices(changed));
+  singular = mend_single_tets(complex_, pieces_, std::move(singular), voxel_price(complex_, image_, contents_),
+                              kMaxPrice, changed);
+  mark_around(singular, marked);
   keep_core(singular);
-  return marked;
+}
+
+// Vertices at which something can have changed in this round.
+std::vector<VertexId> LatticeMender::fresh_vertices(const std::vector<TetId>& changed) const {
+  std::vector<VertexId> vertices;
+  const auto add = [&](TetId t) {
+    vertices.insert(vertices.end(), complex_.mesh.tets[t].begin(), complex_.mesh.tets[t].end());
+  };
+  for (TetId t = 0; t < origins_.size(); ++t) {
+    if (leaves_.list()[origins_[t].leaf].fresh) add(t);
+  }
+  for (const TetId t : changed) add(t);
+  return vertices;
 }
 
 // Those that can be refined.
-std::vector<TetId> LatticeMender::tets_around(const std::vector<VertexId>& singular) const {
-  std::vector<TetId> tets;
+void LatticeMender::mark_around(const std::vector<VertexId>& singular, std::vector<TetId>& marked) const {
   for (const VertexId v : singular) {
     for (const TetId t : complex_.tets_of_vertex[v]) {
-      if (leaves_.list()[origins_[t].leaf].tet.level < lattice_.max_level()) tets.push_back(t);
+      if (leaves_.list()[origins_[t].leaf].tet.level < lattice_.max_level()) marked.push_back(t);
     }
   }
-  return tets;
 }
 
 void LatticeMender::keep_core(const std::vector<VertexId>& singular) {
@@ -169,18 +185,39 @@ std::vector<VertexId> LatticeMender::core_vertices() const {
   return vertices;
 }
 
-void LatticeMender::refine(const std::vector<TetId>& marked, NewLabels new_labels) {
+// The last resort, where refinement has come to its end: ever larger neighbourhoods of what is singular are given to one
+// tissue each.
+void LatticeMender::untangle() {
+  std::vector<VertexId> tangle;
+  for (std::vector<VertexId> singular = singular_vertices(complex_); !singular.empty();
+       singular = singular_vertices(complex_)) {
+    std::vector<TetId> changed;
+    tangle.insert(tangle.end(), singular.begin(), singular.end());
+    const std::size_t known = tangle.size();
+    for (std::size_t i = 0; i < known; ++i) {
+      for (const TetId t : complex_.tets_of_vertex[tangle[i]])
+        tangle.insert(tangle.end(), complex_.mesh.tets[t].begin(), complex_.mesh.tets[t].end());
+    }
+    std::sort(tangle.begin(), tangle.end());
+    tangle.erase(std::unique(tangle.begin(), tangle.end()), tangle.end());
+    mend_neighbourhoods(complex_, pieces_, tangle, contents_.sizes, origins_.size(), changed);
+    mend_single_tets(complex_, pieces_, singular_vertices(complex_), voxel_price(complex_, image_, contents_), kMaxPrice,
+                     changed);
+  }
+}
+
+void LatticeMender::refine(const std::vector<TetId>& marked) {
   std::vector<TetRef> leaves;
   for (const TetId t : marked) leaves.push_back(leaves_.list()[origins_[t].leaf].tet);
   votes_.descend(lattice_.refine(leaves));
-  leaves_.collect(new_labels);
+  leaves_.collect(NewLabels::inherit);
 }
 
 }  // namespace
 
 void clean_leaves(const RedGreenLattice& lattice, const VoxelVotes& votes, LabelledLeaves& leaves,
                   const MendPlan& plan) {
-  LeafMesh taken = mesh_of_leaves(lattice, leaves.list(), plan.origin_mm, plan.unit_mm);
+  LeafMesh taken = mesh_of_leaves(lattice, votes, leaves.list(), plan.origin_mm, plan.unit_mm);
   const auto has_weak_vote = [&](TetId t) {
     const LabelledLeaf& leaf = leaves.list()[taken.origins[t].leaf];
     return !leaf.decided && !votes.hands_label_down(leaf.tet) &&

@@ -54,14 +54,22 @@ class PieceMender {
         locked_(contents.decided) {}
 
   PieceRepair run() {
-    find_open_tissues();
-    if (std::none_of(open_.begin(), open_.end(), [](char open) { return open; })) return {};
-    find_claims();
-    find_holdings();
-    dissolve_empty_pieces();
-    seed_absent_components();
-    cut_shared_pieces();
-    join_pieces();
+    constexpr int kPasses = 4;
+    std::size_t done = 0;
+    for (int pass = 0; pass < kPasses; ++pass) {
+      repair_.refine.clear();
+      find_open_tissues();
+      if (std::none_of(open_.begin(), open_.end(), [](char open) { return open; })) break;
+      find_claims(done);
+      done = repair_.changed.size();
+      find_holdings();
+      dissolve_empty_pieces();
+      seed_absent_components();
+      cut_shared_pieces();
+      join_pieces();
+      if (repair_.changed.size() == done) break;
+      pieces_ = find_pieces(complex_);
+    }
     std::sort(repair_.refine.begin(), repair_.refine.end());
     repair_.refine.erase(std::unique(repair_.refine.begin(), repair_.refine.end()), repair_.refine.end());
     return repair_;
@@ -70,7 +78,7 @@ class PieceMender {
  private:
   void find_open_tissues();
   Claim claim_of(TetId t) const;
-  void find_claims();
+  void find_claims(std::size_t done);
   void find_holdings();
   void dissolve_empty_pieces();
   void seed_absent_components();
@@ -78,7 +86,7 @@ class PieceMender {
   void cut(const std::vector<TetId>& tets);
   void cut_face(TetId a, TetId b);
   void join_pieces();
-  bool join_piece(std::uint32_t piece, const std::vector<TetId>& tets, DisjointSets& joined);
+  void join_piece(std::uint32_t piece, const std::vector<TetId>& tets, DisjointSets& joined);
 
   std::vector<std::vector<TetId>> tets_of(const std::vector<char>& wanted) const;
   TissueId other_tissue(TetId t) const;
@@ -101,6 +109,7 @@ class PieceMender {
   PieceRepair repair_;
 
   std::vector<char> open_;          // by tissue: more than one piece or component
+  std::vector<char> claimed_;       // by tissue: its claims are known
   std::vector<Claim> claims_;       // by tetrahedron, of open tissues
   std::vector<Holding> holdings_;   // by piece and component
   std::vector<std::uint32_t> main_;  // by piece: the component that it has most voxels of, kNone for none
@@ -141,11 +150,21 @@ Claim PieceMender::claim_of(TetId t) const {
   return {};
 }
 
-void PieceMender::find_claims() {
+// Of the tissues that were not open before, and of the tetrahedra relabelled since `done`.
+void PieceMender::find_claims(std::size_t done) {
   claims_.resize(complex_.mesh.tets.size());
-  parallel_for(claims_.size(), [&](std::size_t t) {
-    if (open_[complex_.mesh.tissues[t]]) claims_[t] = claim_of(static_cast<TetId>(t));
-  });
+  claimed_.resize(open_.size());
+  for (std::size_t i = done; i < repair_.changed.size(); ++i) {
+    const TetId t = repair_.changed[i];
+    claims_[t] = open_[complex_.tissue(t)] ? claim_of(t) : Claim{};
+  }
+  if (claimed_ != open_) {
+    parallel_for(claims_.size(), [&](std::size_t t) {
+      const TissueId tissue = complex_.mesh.tissues[t];
+      if (open_[tissue] && !claimed_[tissue]) claims_[t] = claim_of(static_cast<TetId>(t));
+    });
+  }
+  for (std::size_t t = 0; t < open_.size(); ++t) claimed_[t] = claimed_[t] || open_[t];
 }
 
 void PieceMender::find_holdings() {
@@ -153,12 +172,13 @@ void PieceMender::find_holdings() {
   std::pair<std::uint32_t, std::uint32_t> last = {kNone, kNone};
   std::uint32_t* sum = nullptr;
   for (TetId t = 0; t < claims_.size(); ++t) {
-    if (claims_[t].component == kNone) continue;
+    if (claims_[t].component == kNone || !open_[complex_.tissue(t)]) continue;
     const std::pair key = {pieces_.of_tet[t], claims_[t].component};
     if (key != last || !sum) sum = &voxels[key];
     last = key;
     *sum += claims_[t].voxels;
   }
+  holdings_.clear();
   main_.assign(pieces_.list.size(), kNone);
   home_.assign(components_.list().size(), kNone);
   std::vector<std::uint32_t> most_of_piece(main_.size(), 0), most_of_component(home_.size(), 0);
@@ -211,7 +231,6 @@ void PieceMender::dissolve_empty_pieces() {
       }
     }
     if (faces.empty()) continue;
-    ++repair_.wrong;
     const auto best = std::max_element(faces.begin(), faces.end(), [](auto& a, auto& b) { return a.second < b.second; });
     for (const TetId t : tets) {
       relabel(t, best->first, kNone);
@@ -228,7 +247,6 @@ void PieceMender::seed_absent_components() {
     if (!open_[tissue] || home_[c] != kNone) continue;
     absent_in[tissue] = 1;
     any = true;
-    ++repair_.wrong;
   }
   if (!any) return;
   std::vector<std::vector<Claim>> found(complex_.mesh.tets.size());  // voxels of absent components
@@ -264,7 +282,7 @@ void PieceMender::seed_absent_components() {
     }
   }
   for (const auto& [component, seed] : seeds) {
-    if (seed.price < kTooDear && !locked_[seed.tet]) relabel(seed.tet, components_.list()[component].tissue, kNone);
+    if (seed.price < kTooDear) relabel(seed.tet, components_.list()[component].tissue, kNone);
   }
 }
 
@@ -281,7 +299,6 @@ void PieceMender::cut_shared_pieces() {
   for (std::uint32_t c = 0; c < home_.size(); ++c) {
     if (home_[c] == kNone || main_[home_[c]] == c) continue;
     shared[home_[c]] = 1;
-    ++repair_.wrong;
   }
   for (const auto& tets : tets_of(shared)) {
     if (!tets.empty()) cut(tets);
@@ -359,14 +376,11 @@ void PieceMender::join_pieces() {
   }
   std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return tets[a].size() < tets[b].size(); });
   DisjointSets joined(pieces_.list.size());
-  for (const std::uint32_t p : order) {
-    ++repair_.wrong;
-    join_piece(p, tets[p], joined);
-  }
+  for (const std::uint32_t p : order) join_piece(p, tets[p], joined);
 }
 
 // Dijkstra's algorithm from a piece to the nearest other piece of the same component.
-bool PieceMender::join_piece(std::uint32_t piece, const std::vector<TetId>& tets, DisjointSets& joined) {
+void PieceMender::join_piece(std::uint32_t piece, const std::vector<TetId>& tets, DisjointSets& joined) {
   constexpr double kReach = 40, kLocked = 8, kSplits = 5;
   constexpr std::size_t kMaxVisited = 20000;
   const TissueId tissue = pieces_.list[piece].tissue;
@@ -378,7 +392,9 @@ bool PieceMender::join_piece(std::uint32_t piece, const std::vector<TetId>& tets
   };
   std::priority_queue<Step, std::vector<Step>, std::greater<>> open;
   std::unordered_map<TetId, TetId> came_from;
-  for (const TetId t : tets) open.push({0, t, t});
+  for (const TetId t : tets) {
+    if (complex_.tissue(t) == tissue) open.push({0, t, t});  // another path may have taken it
+  }
   TetId end = 0, last = 0;
   bool found = false;
   while (!open.empty() && came_from.size() < kMaxVisited) {
@@ -405,16 +421,15 @@ bool PieceMender::join_piece(std::uint32_t piece, const std::vector<TetId>& tets
   }
   if (!found) {
     for (const TetId t : tets) wants_refinement(t, kPathSize);
-    return false;
+    return;
   }
   std::vector<TetId> path;
   for (TetId t = end; complex_.tissue(t) != tissue; t = came_from.at(t)) path.push_back(t);
   bool too_large = false;
   for (const TetId t : path) too_large = (price_(t, tissue) > 0 && wants_refinement(t, kPathSize)) || too_large;
-  if (too_large) return false;
+  if (too_large) return;
   for (const TetId t : path) relabel(t, tissue, piece);
   joined.join(piece, pieces_.of_tet[last]);
-  return true;
 }
 
 }  // namespace
@@ -441,9 +456,7 @@ RelabelPrice voxel_price(const TetComplex& complex, const TissueImage& image, co
 
 PieceRepair mend_pieces(TetComplex& complex, Pieces& pieces, const TissueImage& image,
                         const ImageComponents& components, const TetContents& contents) {
-  PieceRepair repair = PieceMender(complex, pieces, image, components, contents).run();
-  if (!repair.changed.empty()) pieces = find_pieces(complex);
-  return repair;
+  return PieceMender(complex, pieces, image, components, contents).run();
 }
 
 }  // namespace anatomesh

@@ -35,13 +35,11 @@ RelabelPrice voxel_price(const TetComplex& complex, const TissueImage& image, co
 struct PieceRepair {
   std::vector<TetId> changed;  ///< relabelled
   std::vector<TetId> refine;   ///< to be refined before more can be done
-  std::size_t wrong = 0;       ///< faults found before: components in no piece, in several, or sharing one; pieces of none
 };
 
-/// One round. Pieces without a voxel of their own go to what surrounds them; a component that no tetrahedron has taken
+/// Pieces without a voxel of their own go to what surrounds them; a component that no tetrahedron has taken
 /// gets the one with most of its voxels; pieces of one component are joined along the cheapest path of tetrahedra; a
-/// piece that holds several components is cut half way between them. What it finds depends on the labels before it; so
-/// a few rounds may be needed.
+/// piece that holds several components is cut half way between them. One repair may call for another: a few passes.
 PieceRepair mend_pieces(TetComplex& complex, Pieces& pieces, const TissueImage& image, const ImageComponents& components,
                         const TetContents& contents);
 

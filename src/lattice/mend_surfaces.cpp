@@ -101,15 +101,95 @@ unsigned defect_around(const TetComplex& complex, TetId t) {
   return sum;
 }
 
-// Relabels one tetrahedron at a time.
-class SingleTetMender {
+// Whether giving these tetrahedra to a tissue joins none of its pieces and makes no other piece vanish.
+bool joins_no_pieces(const TetComplex& complex, const Pieces& pieces, std::span<const TetId> tets, TissueId tissue) {
+  std::map<std::uint32_t, std::uint32_t> taken;
+  std::uint32_t joined = Pieces::kNone;
+  bool joins = false;
+  const auto touch = [&](TetId t) {
+    if (tissue == 0 || complex.tissue(t) != tissue) return;
+    joins = joins || (joined != Pieces::kNone && joined != pieces.of_tet[t]);
+    joined = pieces.of_tet[t];
+  };
+  for (const TetId t : tets) {
+    touch(t);
+    for (const TetId other : complex.behind[t]) touch(other);
+    if (complex.tissue(t) != 0 && complex.tissue(t) != tissue) ++taken[pieces.of_tet[t]];
+  }
+  return !joins && std::none_of(taken.begin(), taken.end(),
+                                [&](const auto& piece) { return pieces.list[piece.first].tets <= piece.second; });
+}
+
+// Whether the tetrahedra of a tissue behind the faces of some (the fan), outside a group (ascending) that holds the fan,
+// hang together around the fan without the group.
+bool hangs_together_without(const TetComplex& complex, std::span<const TetId> fan, TissueId tissue,
+                            std::span<const TetId> group) {
+  const auto stays = [&](TetId t) {
+    return complex.tissue(t) == tissue && !std::binary_search(group.begin(), group.end(), t);
+  };
+  std::vector<TetId> wanted, around;
+  for (const TetId t : fan) {
+    for (const TetId other : complex.behind[t]) {
+      if (stays(other)) wanted.push_back(other);
+    }
+  }
+  if (wanted.size() < 2) return true;
+  for (const TetId t : fan) {
+    for (const VertexId v : complex.mesh.tets[t]) {
+      for (const TetId other : complex.tets_of_vertex[v]) {
+        if (stays(other)) around.push_back(other);
+      }
+    }
+  }
+  std::sort(around.begin(), around.end());
+  around.erase(std::unique(around.begin(), around.end()), around.end());
+  std::vector<char> seen(around.size(), 0);
+  const auto place = [&](TetId t) {
+    return static_cast<std::size_t>(std::lower_bound(around.begin(), around.end(), t) - around.begin());
+  };
+  std::vector<TetId> reached = {wanted.front()};
+  seen[place(wanted.front())] = 1;
+  for (std::size_t i = 0; i < reached.size(); ++i) {
+    for (const TetId other : complex.behind[reached[i]]) {
+      const std::size_t at = place(other);
+      if (at == around.size() || around[at] != other || seen[at]) continue;
+      seen[at] = 1;
+      reached.push_back(other);
+    }
+  }
+  return std::all_of(wanted.begin(), wanted.end(), [&](TetId t) { return seen[place(t)]; });
+}
+
+// Whether no tissue but one falls apart when it takes all tetrahedra of a star: each fan of the others can go.
+bool splits_no_pieces(const TetComplex& complex, std::span<const TetId> star, TissueId taker) {
+  std::vector<char> seen(star.size(), 0);
+  for (std::size_t first = 0; first < star.size(); ++first) {
+    const TissueId tissue = complex.tissue(star[first]);
+    if (seen[first] || tissue == 0 || tissue == taker) continue;
+    std::vector<TetId> fan = {star[first]};
+    seen[first] = 1;
+    for (std::size_t i = 0; i < fan.size(); ++i) {
+      for (const TetId other : complex.behind[fan[i]]) {
+        const auto at = static_cast<std::size_t>(std::lower_bound(star.begin(), star.end(), other) - star.begin());
+        if (at == star.size() || star[at] != other || seen[at] || complex.tissue(other) != tissue) continue;
+        seen[at] = 1;
+        fan.push_back(other);
+      }
+    }
+    if (!hangs_together_without(complex, fan, tissue, star)) return false;
+  }
+  return true;
+}
+
+// Relabels single tetrahedra, or all at a vertex, as long as that leaves fewer defects.
+class LabelMender {
  public:
-  SingleTetMender(TetComplex& complex, Pieces& pieces, const RelabelPrice& price, double max_price)
+  LabelMender(TetComplex& complex, Pieces& pieces, const RelabelPrice& price, double max_price)
       : complex_(complex), pieces_(pieces), price_(price), max_price_(max_price) {}
 
   // Takes the tetrahedron at v, and the tissue for it, that leave fewest defects; of equal ones the cheapest.
   // Returns whether there was one.
-  bool mend_at(VertexId v, std::vector<TetId>& changed) {
+  bool mend_by_one(VertexId v, std::vector<TetId>& changed) {
     best_ = {};
     for (const TetId t : complex_.tets_of_vertex[v]) try_tet(t);
     if (best_.gain == 0) return false;
@@ -118,7 +198,55 @@ class SingleTetMender {
     return true;
   }
 
+  // Takes the tissue that, given to all tetrahedra at v, leaves fewest defects. Returns whether there was one.
+  bool mend_by_star(VertexId v, std::vector<TetId>& changed) {
+    const auto star = complex_.tets_of_vertex[v];
+    std::vector<TissueId> own;
+    std::vector<VertexId> vertices;
+    for (const TetId t : star) {
+      own.push_back(complex_.tissue(t));
+      vertices.insert(vertices.end(), complex_.mesh.tets[t].begin(), complex_.mesh.tets[t].end());
+    }
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    std::vector<TissueId> tissues = own;
+    std::sort(tissues.begin(), tissues.end());
+    tissues.erase(std::unique(tissues.begin(), tissues.end()), tissues.end());
+    const unsigned before = defects_at(vertices);
+    Choice best;
+    for (const TissueId tissue : tissues) {
+      if (!joins_no_pieces(complex_, pieces_, star, tissue) || !splits_no_pieces(complex_, star, tissue)) continue;
+      double price = 0;
+      for (const TetId t : star) price += complex_.tissue(t) == tissue ? 0 : price_(t, tissue);
+      if (price > max_price_) continue;
+      for (const TetId t : star) complex_.mesh.tissues[t] = tissue;
+      const unsigned after = defects_at(vertices);
+      for (std::size_t i = 0; i < star.size(); ++i) complex_.mesh.tissues[star[i]] = own[i];
+      if (after < before && before - after > best.gain) best = {before - after, price, star[0], tissue};
+    }
+    if (best.gain == 0) return false;
+    std::uint32_t piece = Pieces::kNone;
+    for (const TetId t : star) {
+      if (best.tissue != 0 && complex_.tissue(t) == best.tissue) piece = pieces_.of_tet[t];
+    }
+    for (const TetId t : star) {
+      if (complex_.tissue(t) == best.tissue) continue;
+      if (complex_.tissue(t) != 0) --pieces_.list[pieces_.of_tet[t]].tets;
+      complex_.mesh.tissues[t] = best.tissue;
+      pieces_.of_tet[t] = piece;
+      if (piece != Pieces::kNone) ++pieces_.list[piece].tets;
+      changed.push_back(t);
+    }
+    return true;
+  }
+
  private:
+  unsigned defects_at(const std::vector<VertexId>& vertices) const {
+    unsigned sum = 0;
+    for (const VertexId v : vertices) sum += star_defect(complex_, v);
+    return sum;
+  }
+
   struct Choice {
     unsigned gain = 0;  // defects fewer
     double price = 0;
@@ -179,73 +307,56 @@ class SingleTetMender {
 
 unsigned star_defect(const TetComplex& complex, VertexId v) { return Star(complex, v).defect(); }
 
-std::vector<VertexId> singular_vertices(const TetComplex& complex) {
-  const std::size_t count = complex.mesh.points_mm.size();
-  std::vector<char> singular(count);
-  parallel_for(count, [&](std::size_t v) { singular[v] = star_defect(complex, static_cast<VertexId>(v)) > 0; });
-  std::vector<VertexId> list;
-  for (VertexId v = 0; v < count; ++v) {
-    if (singular[v]) list.push_back(v);
+std::vector<VertexId> singular_among(const TetComplex& complex, std::vector<VertexId> vertices) {
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  std::vector<char> singular(vertices.size());
+  parallel_for(vertices.size(), [&](std::size_t i) { singular[i] = star_defect(complex, vertices[i]) > 0; });
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    if (singular[i]) vertices[kept++] = vertices[i];
   }
-  return list;
+  vertices.resize(kept);
+  return vertices;
+}
+
+std::vector<VertexId> singular_vertices(const TetComplex& complex) {
+  std::vector<VertexId> all(complex.mesh.points_mm.size());
+  std::iota(all.begin(), all.end(), VertexId{0});
+  return singular_among(complex, std::move(all));
 }
 
 bool neighbours_hang_together(const TetComplex& complex, TetId t) {
-  const TissueId own = complex.tissue(t);
-  std::vector<TetId> around, wanted;
-  for (const TetId other : complex.behind[t]) {
-    if (other != t && complex.tissue(other) == own) wanted.push_back(other);
-  }
-  if (wanted.size() < 2) return true;
-  std::vector<TetId> reached = {wanted.front()};
-  for (const VertexId v : complex.mesh.tets[t]) {
-    for (const TetId other : complex.tets_of_vertex[v]) {
-      if (other != t && complex.tissue(other) == own) around.push_back(other);
-    }
-  }
-  std::sort(around.begin(), around.end());
-  for (std::size_t i = 0; i < reached.size(); ++i) {
-    for (const TetId other : complex.behind[reached[i]]) {
-      if (std::binary_search(around.begin(), around.end(), other) &&
-          std::find(reached.begin(), reached.end(), other) == reached.end())
-        reached.push_back(other);
-    }
-  }
-  return std::all_of(wanted.begin(), wanted.end(),
-                     [&](TetId w) { return std::find(reached.begin(), reached.end(), w) != reached.end(); });
+  const std::array<TetId, 1> alone = {t};
+  return hangs_together_without(complex, alone, complex.tissue(t), alone);
 }
 
-void mend_single_tets(TetComplex& complex, Pieces& pieces, const RelabelPrice& price, double max_price,
-                      std::vector<TetId>& changed) {
-  SingleTetMender mender(complex, pieces, price, max_price);
-  std::vector<VertexId> open = singular_vertices(complex);
+std::vector<VertexId> mend_single_tets(TetComplex& complex, Pieces& pieces, std::vector<VertexId> singular,
+                                       const RelabelPrice& price, double max_price, std::vector<TetId>& changed) {
+  LabelMender mender(complex, pieces, price, max_price);
   // Every step leaves fewer defects in all, so this ends; but it may open a vertex that was sound.
   for (bool progress = true; progress;) {
     progress = false;
-    std::vector<VertexId> next;
-    for (const VertexId v : open) {
-      while (star_defect(complex, v) > 0 && mender.mend_at(v, changed)) {
-        progress = true;
-        const auto& tet = complex.mesh.tets[changed.back()];
+    std::vector<VertexId> next = singular;
+    for (const VertexId v : singular) {
+      const std::size_t done = changed.size();
+      while (star_defect(complex, v) > 0 && mender.mend_by_one(v, changed)) {
+      }
+      if (star_defect(complex, v) > 0) mender.mend_by_star(v, changed);
+      progress = progress || changed.size() > done;
+      for (std::size_t i = done; i < changed.size(); ++i) {
+        const auto& tet = complex.mesh.tets[changed[i]];
         next.insert(next.end(), tet.begin(), tet.end());
       }
-      next.push_back(v);
     }
-    std::sort(next.begin(), next.end());
-    next.erase(std::unique(next.begin(), next.end()), next.end());
-    std::erase_if(next, [&](VertexId v) { return star_defect(complex, v) == 0; });
-    open = std::move(next);
+    if (progress) singular = singular_among(complex, std::move(next));
   }
+  return singular;
 }
 
 namespace {
 
-// Tetrahedra that touch one group of vertices.
-struct Neighbourhood {
-  std::vector<TetId> tets;
-};
-
-std::vector<Neighbourhood> group_neighbourhoods(const TetComplex& complex, std::span<const VertexId> vertices) {
+std::vector<std::vector<TetId>> group_neighbourhoods(const TetComplex& complex, std::span<const VertexId> vertices) {
   std::vector<TetId> tets;
   for (const VertexId v : vertices) tets.insert(tets.end(), complex.tets_of_vertex[v].begin(), complex.tets_of_vertex[v].end());
   std::sort(tets.begin(), tets.end());
@@ -258,7 +369,7 @@ std::vector<Neighbourhood> group_neighbourhoods(const TetComplex& complex, std::
     const auto star = complex.tets_of_vertex[v];
     for (const TetId t : star) sets.join(place(star[0]), place(t));
   }
-  std::vector<Neighbourhood> groups;
+  std::vector<std::vector<TetId>> groups;
   std::vector<std::uint32_t> group(tets.size());
   for (std::uint32_t i = 0; i < tets.size(); ++i) {
     if (sets.is_root(i)) {
@@ -267,39 +378,20 @@ std::vector<Neighbourhood> group_neighbourhoods(const TetComplex& complex, std::
     } else {
       group[i] = group[sets.root(i)];
     }
-    groups[group[i]].tets.push_back(tets[i]);
+    groups[group[i]].push_back(tets[i]);
   }
   return groups;
 }
 
-// Whether giving these tetrahedra to a tissue joins none of its pieces and makes no other piece vanish.
-bool keeps_pieces(const TetComplex& complex, const Pieces& pieces, const Neighbourhood& group, TissueId tissue) {
-  std::map<std::uint32_t, std::uint32_t> taken;
-  std::uint32_t joined = Pieces::kNone;
-  bool joins = false;
-  const auto touch = [&](TetId t) {
-    if (tissue == 0 || complex.tissue(t) != tissue) return;
-    joins = joins || (joined != Pieces::kNone && joined != pieces.of_tet[t]);
-    joined = pieces.of_tet[t];
-  };
-  for (const TetId t : group.tets) {
-    touch(t);
-    for (const TetId other : complex.behind[t]) touch(other);
-    if (complex.tissue(t) != 0 && complex.tissue(t) != tissue) ++taken[pieces.of_tet[t]];
-  }
-  return !joins && std::none_of(taken.begin(), taken.end(),
-                                [&](const auto& piece) { return pieces.list[piece.first].tets <= piece.second; });
-}
-
-TissueId choose_tissue(const TetComplex& complex, const Pieces& pieces, const Neighbourhood& group,
+TissueId choose_tissue(const TetComplex& complex, const Pieces& pieces, const std::vector<TetId>& group,
                        std::span<const float> sizes) {
   std::map<TissueId, double> volume;
-  for (const TetId t : group.tets) volume[complex.tissue(t)] += static_cast<double>(sizes[t]);
+  for (const TetId t : group) volume[complex.tissue(t)] += static_cast<double>(sizes[t]);
   std::vector<std::pair<double, TissueId>> order;
   for (const auto& [tissue, v] : volume) order.emplace_back(-v, tissue);
   std::sort(order.begin(), order.end());
   for (const auto& [v, tissue] : order) {
-    if (keeps_pieces(complex, pieces, group, tissue)) return tissue;
+    if (joins_no_pieces(complex, pieces, group, tissue)) return tissue;
   }
   return order.front().second;
 }
@@ -307,10 +399,11 @@ TissueId choose_tissue(const TetComplex& complex, const Pieces& pieces, const Ne
 }  // namespace
 
 void mend_neighbourhoods(TetComplex& complex, Pieces& pieces, std::span<const VertexId> vertices,
-                         std::span<const float> sizes, std::vector<TetId>& changed) {
-  for (const Neighbourhood& group : group_neighbourhoods(complex, vertices)) {
+                         std::span<const float> sizes, std::size_t max_tets, std::vector<TetId>& changed) {
+  for (const std::vector<TetId>& group : group_neighbourhoods(complex, vertices)) {
+    if (group.size() > max_tets) continue;
     const TissueId tissue = choose_tissue(complex, pieces, group, sizes);
-    for (const TetId t : group.tets) {
+    for (const TetId t : group) {
       if (complex.tissue(t) == tissue) continue;
       complex.mesh.tissues[t] = tissue;
       changed.push_back(t);
