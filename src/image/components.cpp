@@ -19,7 +19,8 @@ void for_each_run(const TissueImage& image, std::size_t row, const Visit& visit)
   const TissueId* voxels = &image.voxels[row * nx];
   for (std::size_t begin = 0, end = 0; begin < nx; begin = end) {
     while (end < nx && voxels[end] == voxels[begin]) ++end;
-    if (voxels[begin] != 0) visit(static_cast<std::uint32_t>(row * nx + begin), static_cast<std::uint32_t>(row * nx + end));
+    if (voxels[begin] != 0)
+      visit(static_cast<std::uint32_t>(row * nx + begin), static_cast<std::uint32_t>(row * nx + end));
   }
 }
 

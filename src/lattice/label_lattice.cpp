@@ -169,8 +169,7 @@ std::vector<Demand> LabelLattice::Impl::demands() const {
     const double off = std::abs(volume_mm3[t] / (static_cast<double>(image_.counts[t]) * s.x * s.y * s.z) - 1);
     const double far_off = kFarOff + 1 - plan_.fidelity[t];
     demands[t].thin = off > far_off;
-    if (demands[t].thin)
-      demands[t].level_limit = std::min(plan_.levels + (off > 2 * far_off ? 2 : 1), deepest_);
+    if (demands[t].thin) demands[t].level_limit = std::min(plan_.levels + (off > 2 * far_off ? 2 : 1), deepest_);
     if (demands[t].absent) demands[t].level_limit = deepest_;
   }
   return demands;
@@ -199,7 +198,8 @@ bool LabelLattice::Impl::refine_until_faithful(const Stage& stage) {
     stage.check_cancelled();
     const std::vector<Demand> asked = demands();
     std::vector<char> wanted(leaves_.list().size());
-    parallel_for(leaves_.list().size(), [&](std::size_t i) { wanted[i] = wants_refinement(leaves_.list()[i].tet, asked); });
+    parallel_for(leaves_.list().size(),
+                 [&](std::size_t i) { wanted[i] = wants_refinement(leaves_.list()[i].tet, asked); });
     std::vector<TetRef> marked;
     for (std::size_t i = 0; i < leaves_.list().size(); ++i) {
       if (wanted[i]) marked.push_back(leaves_.list()[i].tet);

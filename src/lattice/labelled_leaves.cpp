@@ -15,7 +15,8 @@ void LabelledLeaves::collect(NewLabels new_labels) {
     if (!old.empty()) places[static_cast<std::size_t>(level)].assign(lattice_.slot_count(level), kNone);
     for (std::uint32_t slot = 0; slot < lattice_.slot_count(level); ++slot) {
       const TetRef t = {level, slot};
-      if (lattice_.is_leaf(t)) leaves_.push_back({.tet = t, .split_edges = static_cast<std::uint8_t>(lattice_.split_edges(t)), .votes = {}});
+      if (lattice_.is_leaf(t))
+        leaves_.push_back({.tet = t, .split_edges = static_cast<std::uint8_t>(lattice_.split_edges(t)), .votes = {}});
     }
   }
   for (std::uint32_t i = 0; i < old.size(); ++i)
@@ -25,17 +26,16 @@ void LabelledLeaves::collect(NewLabels new_labels) {
 
 void LabelledLeaves::label(LabelledLeaf& leaf, const std::vector<LabelledLeaf>& old, const Places& places,
                            NewLabels how) const {
-  const auto place = [&](TetRef t) {
-    return old.empty() ? kNone : places[static_cast<std::size_t>(t.level)][t.slot];
-  };
+  const auto place = [&](TetRef t) { return old.empty() ? kNone : places[static_cast<std::size_t>(t.level)][t.slot]; };
   std::uint32_t from = place(leaf.tet);
   const bool stayed = from != kNone;
   if (stayed && old[from].split_edges == leaf.split_edges) {
     leaf = old[from];
     leaf.fresh = false;
+    if (counted(leaf) != votes_.vote(leaf.tet).count) recount(leaf);
     return;
   }
-  leaf.votes = leaf.split_edges == 0 ? std::array<Vote, 4>{votes_.vote(leaf.tet)} : votes_.green_votes(leaf.tet);
+  leaf.votes = fresh_votes(leaf);
   if (how == NewLabels::inherit) {
     TetRef ancestor = leaf.tet;
     while (from == kNone && ancestor.level > 0) {
@@ -46,6 +46,24 @@ void LabelledLeaves::label(LabelledLeaf& leaf, const std::vector<LabelledLeaf>& 
   } else if (stayed && old[from].decided) {
     inherit(leaf, old[from]);
   }
+}
+
+// Voxels that its parts know of: none while it is inside a large pure tetrahedron.
+std::uint32_t LabelledLeaves::counted(const LabelledLeaf& leaf) {
+  std::uint32_t count = 0;
+  for (std::size_t c = 0; c < static_cast<std::size_t>(leaf.split().count); ++c) count += leaf.votes[c].count;
+  return count;
+}
+
+void LabelledLeaves::recount(LabelledLeaf& leaf) const {
+  const std::array<Vote, 4> before = leaf.votes;
+  leaf.votes = fresh_votes(leaf);
+  for (std::uint32_t c = 0; c < static_cast<std::uint32_t>(leaf.split().count); ++c) give(leaf, c, before[c].tissue);
+}
+
+std::array<Vote, 4> LabelledLeaves::fresh_votes(const LabelledLeaf& leaf) const {
+  if (leaf.split_edges == 0) return {votes_.vote(leaf.tet)};
+  return votes_.green_votes(leaf.tet);
 }
 
 void LabelledLeaves::inherit(LabelledLeaf& leaf, const LabelledLeaf& from) const {
@@ -59,7 +77,8 @@ void LabelledLeaves::inherit(LabelledLeaf& leaf, const LabelledLeaf& from) const
       const LatticePoint p = node < 4 ? vertices[node] : bcc_edge_midpoint(b, static_cast<int>(node - 4));
       for (std::size_t a = 0; a < 3; ++a) centre[a] += scale * p[a];
     }
-    const int old_part = from.split_edges == 0 ? 0 : green_child_at(from.split_edges, bcc_barycentric_times_4(old, centre));
+    const int old_part =
+        from.split_edges == 0 ? 0 : green_child_at(from.split_edges, bcc_barycentric_times_4(old, centre));
     give(leaf, part, from.votes[static_cast<std::size_t>(old_part)].tissue);
   }
 }

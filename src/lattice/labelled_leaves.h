@@ -49,6 +49,9 @@ class LabelledLeaves {
   using Places = std::vector<std::vector<std::uint32_t>>;  // of leaves, by level and slot
 
   void label(LabelledLeaf& leaf, const std::vector<LabelledLeaf>& old, const Places& places, NewLabels how) const;
+  static std::uint32_t counted(const LabelledLeaf& leaf);
+  void recount(LabelledLeaf& leaf) const;
+  std::array<Vote, 4> fresh_votes(const LabelledLeaf& leaf) const;
   void inherit(LabelledLeaf& leaf, const LabelledLeaf& from) const;
   void give(LabelledLeaf& leaf, std::uint32_t part, TissueId tissue) const;
 

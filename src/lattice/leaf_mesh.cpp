@@ -39,7 +39,8 @@ LeafMesh mesh_of_leaves(const RedGreenLattice& lattice, const VoxelVotes& votes,
       const LabelledLeaf& leaf = leaves[i];
       if (is_bulk(leaf) != bulk) continue;
       const auto nodes = nodes_of(lattice, leaf.tet);
-      if (bulk && std::none_of(nodes.begin(), nodes.end(), [&](auto& node) { return vertices.find(node) < near; })) continue;
+      if (bulk && std::none_of(nodes.begin(), nodes.end(), [&](auto& node) { return vertices.find(node) < near; }))
+        continue;
       const bool positive = is_positive(lattice.barycentre(leaf.tet));
       for (std::uint32_t part = 0; part < static_cast<std::uint32_t>(leaf.split().count); ++part) {
         std::array<VertexId, 4> tet;

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
-#include <cstdlib>
-#include <cstdio>
 
 #include "base/parallel.h"
 #include "lattice/clean_labels.h"
@@ -32,12 +30,7 @@ class LatticeMender {
  public:
   LatticeMender(const TissueImage& image, const ImageComponents& components, RedGreenLattice& lattice,
                 VoxelVotes& votes, LabelledLeaves& leaves, const MendPlan& plan)
-      : image_(image),
-        components_(components),
-        lattice_(lattice),
-        votes_(votes),
-        leaves_(leaves),
-        plan_(plan) {}
+      : image_(image), components_(components), lattice_(lattice), votes_(votes), leaves_(leaves), plan_(plan) {}
 
   LeafMesh run(const Stage& stage) {
     for (int round = 0;; ++round) {
@@ -45,12 +38,12 @@ class LatticeMender {
       take_mesh();
       std::vector<TetId> changed, marked;
       mend_around_core(changed);
+      if (round == kPieceRounds - 1) std::fill(contents_.may_refine.begin(), contents_.may_refine.end(), char{0});
       if (round < kPieceRounds) mend_pieces_here(changed, marked);
       if (plan_.manifold) mend_surfaces_here(round == 0, changed, marked);
       if (round == 0) max_tets_ = 4 * origins_.size() + kMinRoom;
       const bool last = marked.empty() || round == kMaxRounds || origins_.size() > max_tets_;
       if (last && plan_.manifold) untangle();
-      if (getenv("TOPO")) fprintf(stderr, "round %d tets %zu changed %zu marked %zu core %zu\n", round, origins_.size(), changed.size(), marked.size(), core_.points().size());
       record(complex_.mesh, origins_, leaves_);
       if (last) break;
       refine(marked);
@@ -134,7 +127,8 @@ void LatticeMender::mend_around_core(std::vector<TetId>& changed) {
 }
 
 void LatticeMender::mend_surfaces_here(bool all, std::vector<TetId>& changed, std::vector<TetId>& marked) {
-  std::vector<VertexId> singular = all ? singular_vertices(complex_) : singular_among(complex_, fresh_vertices(changed));
+  std::vector<VertexId> singular =
+      all ? singular_vertices(complex_) : singular_among(complex_, fresh_vertices(changed));
   singular = mend_single_tets(complex_, pieces_, std::move(singular), voxel_price(complex_, image_, contents_),
                               kMaxPrice, changed);
   mark_around(singular, marked);
@@ -185,8 +179,8 @@ std::vector<VertexId> LatticeMender::core_vertices() const {
   return vertices;
 }
 
-// The last resort, where refinement has come to its end: ever larger neighbourhoods of what is singular are given to one
-// tissue each.
+// The last resort, where refinement has come to its end: ever larger neighbourhoods of what is singular are given to
+// one tissue each.
 void LatticeMender::untangle() {
   std::vector<VertexId> tangle;
   for (std::vector<VertexId> singular = singular_vertices(complex_); !singular.empty();
@@ -201,14 +195,15 @@ void LatticeMender::untangle() {
     std::sort(tangle.begin(), tangle.end());
     tangle.erase(std::unique(tangle.begin(), tangle.end()), tangle.end());
     mend_neighbourhoods(complex_, pieces_, tangle, contents_.sizes, origins_.size(), changed);
-    mend_single_tets(complex_, pieces_, singular_vertices(complex_), voxel_price(complex_, image_, contents_), kMaxPrice,
-                     changed);
+    mend_single_tets(complex_, pieces_, singular_vertices(complex_), voxel_price(complex_, image_, contents_),
+                     kMaxPrice, changed);
   }
 }
 
 void LatticeMender::refine(const std::vector<TetId>& marked) {
   std::vector<TetRef> leaves;
   for (const TetId t : marked) leaves.push_back(leaves_.list()[origins_[t].leaf].tet);
+  for (const TetRef leaf : leaves) votes_.keep_voxels(leaf);
   votes_.descend(lattice_.refine(leaves));
   leaves_.collect(NewLabels::inherit);
 }

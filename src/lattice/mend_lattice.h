@@ -9,14 +9,15 @@
 namespace anatomesh {
 
 struct MendPlan {
-  Vec3 origin_mm;             ///< lattice point (0, 0, 0) in the image's frame
-  double unit_mm = 2;         ///< a quarter of the coarsest spacing
-  int piece_level = 5;        ///< how far tetrahedra are refined for the sake of pieces
-  bool manifold = true;       ///< whether to mend surfaces; pieces are always mended
+  Vec3 origin_mm;        ///< lattice point (0, 0, 0) in the image's frame
+  double unit_mm = 2;    ///< a quarter of the coarsest spacing
+  int piece_level = 5;   ///< how far tetrahedra are refined for the sake of pieces
+  bool manifold = true;  ///< whether to mend surfaces; pieces are always mended
 };
 
 /// Gives tetrahedra with a weak vote that stick out of their tissue, or are cut off from it, to their surroundings.
-void clean_leaves(const RedGreenLattice& lattice, const VoxelVotes& votes, LabelledLeaves& leaves, const MendPlan& plan);
+void clean_leaves(const RedGreenLattice& lattice, const VoxelVotes& votes, LabelledLeaves& leaves,
+                  const MendPlan& plan);
 
 /// Mends the labels of the leaves, and refines where that takes smaller tetrahedra. Returns the lattice as it is then.
 /// Where a surface is singular, the leaves around are refined, their children keep their parents' tissues, and the

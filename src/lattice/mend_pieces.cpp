@@ -86,6 +86,7 @@ class PieceMender {
   void cut(const std::vector<TetId>& tets);
   void cut_face(TetId a, TetId b);
   void join_pieces();
+  double path_cost(TetId t, TissueId tissue) const;
   void join_piece(std::uint32_t piece, const std::vector<TetId>& tets, DisjointSets& joined);
 
   std::vector<std::vector<TetId>> tets_of(const std::vector<char>& wanted) const;
@@ -108,10 +109,10 @@ class PieceMender {
   std::vector<char> locked_;  // relabelled by a repair: others go around it
   PieceRepair repair_;
 
-  std::vector<char> open_;          // by tissue: more than one piece or component
-  std::vector<char> claimed_;       // by tissue: its claims are known
-  std::vector<Claim> claims_;       // by tetrahedron, of open tissues
-  std::vector<Holding> holdings_;   // by piece and component
+  std::vector<char> open_;           // by tissue: more than one piece or component
+  std::vector<char> claimed_;        // by tissue: its claims are known
+  std::vector<Claim> claims_;        // by tetrahedron, of open tissues
+  std::vector<Holding> holdings_;    // by piece and component
   std::vector<std::uint32_t> main_;  // by piece: the component that it has most voxels of, kNone for none
   std::vector<std::uint32_t> home_;  // by component: the piece that has most of its voxels, kNone for none
 };
@@ -231,7 +232,8 @@ void PieceMender::dissolve_empty_pieces() {
       }
     }
     if (faces.empty()) continue;
-    const auto best = std::max_element(faces.begin(), faces.end(), [](auto& a, auto& b) { return a.second < b.second; });
+    const auto best =
+        std::max_element(faces.begin(), faces.end(), [](auto& a, auto& b) { return a.second < b.second; });
     for (const TetId t : tets) {
       relabel(t, best->first, kNone);
       locked_[t] = 0;
@@ -333,9 +335,9 @@ void PieceMender::cut(const std::vector<TetId>& tets) {
 
 // One of two tetrahedra that join two components gets another tissue: the one with fewer voxels of its own.
 void PieceMender::cut_face(TetId a, TetId b) {
-  const TetId t = std::tuple(claims_[a].voxels, contents_.sizes[a], a) <= std::tuple(claims_[b].voxels, contents_.sizes[b], b)
-                      ? a
-                      : b;
+  const TetId t =
+      std::tuple(claims_[a].voxels, contents_.sizes[a], a) <= std::tuple(claims_[b].voxels, contents_.sizes[b], b) ? a
+                                                                                                                   : b;
   if (wants_refinement(t, claims_[t].voxels > 0 ? kTightSize : kCutSize)) {
     wants_refinement(t == a ? b : a, kCutSize);
     return;
@@ -379,9 +381,26 @@ void PieceMender::join_pieces() {
   for (const std::uint32_t p : order) join_piece(p, tets[p], joined);
 }
 
+// What it costs, in voxels, to lead a path of a tissue through a tetrahedron of another. One that will be refined first
+// counts by its width, less where it holds voxels of the tissue.
+double PieceMender::path_cost(TetId t, TissueId tissue) const {
+  constexpr double kLocked = 8, kSplits = 5;
+  const auto size = static_cast<double>(contents_.sizes[t]);
+  if (contents_.may_refine[t] && (contents_.fixed[t] || contents_.sizes[t] > kPathSize)) {
+    const auto voxels = contents_.voxels(t);
+    const bool leads_there =
+        std::any_of(voxels.begin(), voxels.end(), [&](auto v) { return image_.voxels[v] == tissue; });
+    return leads_there ? 0.5 : 1 + std::cbrt(size);
+  }
+  double cost = price_(t, tissue) + 0.2 * size + 0.05;
+  if (locked_[t]) cost += kLocked;
+  if (complex_.tissue(t) != 0 && !neighbours_hang_together(complex_, t)) cost += kSplits;
+  return cost;
+}
+
 // Dijkstra's algorithm from a piece to the nearest other piece of the same component.
 void PieceMender::join_piece(std::uint32_t piece, const std::vector<TetId>& tets, DisjointSets& joined) {
-  constexpr double kReach = 40, kLocked = 8, kSplits = 5;
+  constexpr double kReach = 40;
   constexpr std::size_t kMaxVisited = 20000;
   const TissueId tissue = pieces_.list[piece].tissue;
   const std::uint32_t component = main_[piece];
@@ -413,9 +432,7 @@ void PieceMender::join_piece(std::uint32_t piece, const std::vector<TetId>& tets
         continue;
       }
       if (touches_other_component(other, component)) continue;
-      double cost = price_(other, tissue) + 0.2 * static_cast<double>(contents_.sizes[other]) + 0.05;
-      if (locked_[other]) cost += kLocked;
-      if (complex_.tissue(other) != 0 && !neighbours_hang_together(complex_, other)) cost += kSplits;
+      const double cost = path_cost(other, tissue);
       if (step.cost + cost < kReach) open.push({step.cost + cost, other, step.tet});
     }
   }
@@ -426,7 +443,10 @@ void PieceMender::join_piece(std::uint32_t piece, const std::vector<TetId>& tets
   std::vector<TetId> path;
   for (TetId t = end; complex_.tissue(t) != tissue; t = came_from.at(t)) path.push_back(t);
   bool too_large = false;
-  for (const TetId t : path) too_large = (price_(t, tissue) > 0 && wants_refinement(t, kPathSize)) || too_large;
+  for (const TetId t : path) {
+    const float size = contents_.fixed[t] ? 0 : kPathSize;
+    too_large = (price_(t, tissue) > 0 && wants_refinement(t, size)) || too_large;
+  }
   if (too_large) return;
   for (const TetId t : path) relabel(t, tissue, piece);
   joined.join(piece, pieces_.of_tet[last]);

@@ -90,8 +90,8 @@ class Star {
   std::span<const TetId> tets_;
   VertexId vertex_;
   std::size_t fans_ = 0;
-  std::vector<TissueId> tissues_;                             // around the vertex
-  std::vector<std::uint16_t> parent_;                         // union-find over the star
+  std::vector<TissueId> tissues_;                              // around the vertex
+  std::vector<std::uint16_t> parent_;                          // union-find over the star
   std::vector<std::pair<std::uint16_t, std::uint16_t>> rims_;  // faces between two tissues
 };
 
@@ -120,8 +120,8 @@ bool joins_no_pieces(const TetComplex& complex, const Pieces& pieces, std::span<
                                 [&](const auto& piece) { return pieces.list[piece.first].tets <= piece.second; });
 }
 
-// Whether the tetrahedra of a tissue behind the faces of some (the fan), outside a group (ascending) that holds the fan,
-// hang together around the fan without the group.
+// Whether the tetrahedra of a tissue behind the faces of some (the fan), outside a group (ascending) that holds the
+// fan, hang together around the fan without the group.
 bool hangs_together_without(const TetComplex& complex, std::span<const TetId> fan, TissueId tissue,
                             std::span<const TetId> group) {
   const auto stays = [&](TetId t) {
@@ -358,7 +358,8 @@ namespace {
 
 std::vector<std::vector<TetId>> group_neighbourhoods(const TetComplex& complex, std::span<const VertexId> vertices) {
   std::vector<TetId> tets;
-  for (const VertexId v : vertices) tets.insert(tets.end(), complex.tets_of_vertex[v].begin(), complex.tets_of_vertex[v].end());
+  for (const VertexId v : vertices)
+    tets.insert(tets.end(), complex.tets_of_vertex[v].begin(), complex.tets_of_vertex[v].end());
   std::sort(tets.begin(), tets.end());
   tets.erase(std::unique(tets.begin(), tets.end()), tets.end());
   const auto place = [&](TetId t) {

@@ -1,8 +1,9 @@
 // Makes every tissue's surface (and that of the background) a 2-manifold by relabelling tetrahedra.
 //
-// At a vertex, the tetrahedra around it cut a small sphere into regions. The surface of a tissue is one sheet there when
-// its region and the rest of the sphere are each in one piece (reached through faces at the vertex): then the region
-// is a disk. The edges at such a vertex are sound, too. So a mesh without singular vertices has no singular edges.
+// At a vertex, the tetrahedra around it cut a small sphere into regions. The surface of a tissue is one sheet there
+// when its region and the rest of the sphere are each in one piece (reached through faces at the vertex): then the
+// region is a disk. The edges at such a vertex are sound, too. So a mesh without singular vertices has no singular
+// edges.
 #pragma once
 
 #include <functional>
@@ -35,9 +36,9 @@ std::vector<VertexId> mend_single_tets(TetComplex& complex, Pieces& pieces, std:
                                        const RelabelPrice& price, double max_price, std::vector<TetId>& changed);
 
 /// Gives all tetrahedra that touch these vertices to one tissue (one for each group of vertices that touch
-/// common tetrahedra): the one with most volume among them that neither joins two pieces nor makes one vanish. Where the
-/// vertices are all the singular ones and the tetrahedra around them lie as in a regular neighbourhood, no defect is
-/// left. Groups of more than max_tets tetrahedra are left alone. sizes: volumes of the tetrahedra. Pieces are found
+/// common tetrahedra): the one with most volume among them that neither joins two pieces nor makes one vanish. Where
+/// the vertices are all the singular ones and the tetrahedra around them lie as in a regular neighbourhood, no defect
+/// is left. Groups of more than max_tets tetrahedra are left alone. sizes: volumes of the tetrahedra. Pieces are found
 /// anew.
 void mend_neighbourhoods(TetComplex& complex, Pieces& pieces, std::span<const VertexId> vertices,
                          std::span<const float> sizes, std::size_t max_tets, std::vector<TetId>& changed);

@@ -162,6 +162,25 @@ void VoxelVotes::hand_down(TetRef parent) {
   }
 }
 
+void VoxelVotes::keep_voxels(TetRef t) {
+  const auto level = static_cast<std::size_t>(t.level);
+  if (begin_[level][t.slot] == kInherited) {
+    TetRef parent;
+    lattice_.find(t.level - 1, bcc_parent(lattice_.barycentre(t)), parent);
+    keep_voxels(parent);
+    hand_down_again(parent);
+  }
+  votes_[level][t.slot].pure = false;
+}
+
+// To all below it that do not hand a label down.
+void VoxelVotes::hand_down_again(TetRef parent) {
+  hand_down(parent);
+  for (const TetRef child : lattice_.children(parent)) {
+    if (lattice_.is_refined(child) && !hands_label_down(child)) hand_down_again(child);
+  }
+}
+
 std::span<const std::uint32_t> VoxelVotes::voxels(TetRef t) const {
   const auto level = static_cast<std::size_t>(t.level);
   const Vote& v = votes_[level][t.slot];

@@ -29,6 +29,10 @@ class VoxelVotes {
   /// Hands the voxels of newly refined tetrahedra to their children. Parents before children.
   void descend(const std::vector<TetRef>& refined);
 
+  /// From now on the children of a tetrahedron know their voxels, though it is pure and large or inside such a one. For
+  /// leaves whose label a repair may change.
+  void keep_voxels(TetRef t);
+
   const Vote& vote(TetRef t) const { return votes_[static_cast<std::size_t>(t.level)][t.slot]; }
 
   /// Voxels of a tetrahedron, as offsets in the image; empty for one inside a large pure one.
@@ -64,6 +68,7 @@ class VoxelVotes {
   void sort_into_roots();
   const GreenVoxels& voxels_of_green_parts(TetRef leaf) const;
   void hand_down(TetRef parent);
+  void hand_down_again(TetRef parent);
   Vec3 position(std::uint32_t voxel, int level) const;
   Vote count_votes(std::span<const std::uint32_t> voxels, const std::array<Vec3, 4>& corners) const;
   TissueId interpolated_tissue(const std::array<Vec3, 4>& corners) const;

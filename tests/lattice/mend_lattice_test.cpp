@@ -42,8 +42,10 @@ void expect_whole(const TissueImage& image, const TissueMesh& mesh) {
 
 std::vector<NamedImage> ambiguous_images() {
   return {
-      {"voxels_at_an_edge", make_image({4, 4, 3}, [](int i, int j, int k) { return Label(k == 1 && i == j && i % 3 != 0); })},
-      {"voxels_at_a_corner", make_image({4, 4, 4}, [](int i, int j, int k) { return Label(i == j && j == k && i % 3 != 0); })},
+      {"voxels_at_an_edge",
+       make_image({4, 4, 3}, [](int i, int j, int k) { return Label(k == 1 && i == j && i % 3 != 0); })},
+      {"voxels_at_a_corner",
+       make_image({4, 4, 4}, [](int i, int j, int k) { return Label(i == j && j == k && i % 3 != 0); })},
       {"diagonal_line", make_image({14, 14, 14}, [](int i, int j, int k) { return Label(i == j && j == k); })},
       {"flat_diagonal_line", make_image({14, 14, 3}, [](int i, int j, int k) { return Label(i == j && k == 1); })},
       {"line", make_image({16, 5, 5}, [](int, int j, int k) { return Label(j == 2 && k == 2); })},
@@ -54,11 +56,11 @@ std::vector<NamedImage> ambiguous_images() {
                                         })},
       {"slanted_plate", make_image({12, 12, 12}, [](int i, int j, int k) { return Label(i + j + k == 16); })},
       {"plates", make_image({12, 12, 9}, [](int, int, int k) { return Label(k % 2); })},
-      {"islands", make_image({14, 14, 14}, [](int i, int j, int k) { return Label(i % 3 == 1 && j % 4 == 1 && k % 5 == 1); })},
-      {"islands_in_a_tissue", make_image({14, 14, 14},
-                                         [](int i, int j, int k) {
-                                           return Label(1 + (i % 4 == 1 && j % 4 == 1 && k % 5 == 1));
-                                         })},
+      {"islands",
+       make_image({14, 14, 14}, [](int i, int j, int k) { return Label(i % 3 == 1 && j % 4 == 1 && k % 5 == 1); })},
+      {"islands_in_a_tissue",
+       make_image({14, 14, 14},
+                  [](int i, int j, int k) { return Label(1 + (i % 4 == 1 && j % 4 == 1 && k % 5 == 1)); })},
       {"fine_checkerboard", testing::checkerboard(1)},
   };
 }
