@@ -4,7 +4,7 @@
 #include <tuple>
 #include <utility>
 
-#include "assess/disjoint_sets.h"
+#include "base/disjoint_sets.h"
 #include "base/parallel.h"
 #include "base/vec.h"
 

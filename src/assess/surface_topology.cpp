@@ -7,8 +7,8 @@
 #include <tuple>
 #include <vector>
 
-#include "assess/disjoint_sets.h"
 #include "assess/statistics.h"
+#include "base/disjoint_sets.h"
 #include "base/parallel.h"
 #include "base/vec.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <span>
 
-#include "assess/disjoint_sets.h"
+#include "base/disjoint_sets.h"
 #include "base/parallel.h"
 
 namespace anatomesh::assess_detail {

@@ -7,7 +7,10 @@
 
 #include "base/parallel.h"
 #include "base/vec.h"
-#include "lattice/clean_labels.h"
+#include "image/components.h"
+#include "lattice/labelled_leaves.h"
+#include "lattice/leaf_mesh.h"
+#include "lattice/mend_lattice.h"
 #include "lattice/red_green.h"
 #include "lattice/voxel_votes.h"
 
@@ -48,19 +51,16 @@ Placement place_lattice(const TissueImage& image, const LatticePlan& plan) {
   return place;
 }
 
+// Levels below the deepest one where a surface may be mended.
+constexpr int kMendLevels = 3;
+
 // As many of the extra levels as the lattice's coordinates allow.
-int deepest_level(const Placement& place, const LatticePlan& plan) {
+int deepest_level(const Placement& place, const LatticePlan& plan, int extra_levels) {
   const double widest = *std::max_element(place.cells.begin(), place.cells.end());
-  int level = plan.levels + plan.extra_levels;
+  int level = plan.levels + extra_levels;
   while (level > plan.levels && widest * 4 * std::ldexp(1.0, level) > LatticePointMap::kMaxCoordinate) --level;
   return level;
 }
-
-// A leaf and the votes of its parts: one, or those of its green split.
-struct VotedLeaf {
-  TetRef tet;
-  std::array<Vote, 4> votes;
-};
 
 // What a tissue asks of the tetrahedra that hold its voxels.
 struct Demand {
@@ -78,8 +78,11 @@ class LabelLattice::Impl {
         plan_(plan),
         target_(plan.fidelity),
         place_(place_lattice(image, plan)),
-        lattice_(place_.cells, deepest_level(place_, plan)),
-        votes_(image, lattice_, place_.origin_mm, place_.unit_mm) {}
+        deepest_(deepest_level(place_, plan, plan.extra_levels)),
+        lattice_(place_.cells, deepest_level(place_, plan, plan.extra_levels + kMendLevels)),
+        votes_(image, lattice_, place_.origin_mm, place_.unit_mm),
+        leaves_(lattice_, votes_),
+        components_(image) {}
 
   LabelledLattice build(const Stage& stage);
   std::optional<LabelledLattice> refine(const FidelityGap& gap, const Stage& stage);
@@ -88,47 +91,33 @@ class LabelLattice::Impl {
   /// Returns whether anything was refined.
   bool refine_until_faithful(const Stage& stage);
   std::vector<TetRef> leaves_to_mend(const FidelityGap& gap) const;
-  LabelledLattice extract(const Stage& stage) const;
+  LabelledLattice make_whole(const Stage& stage);
+  MendPlan mend_plan() const { return {place_.origin_mm, place_.unit_mm, deepest_, !plan_.allow_non_manifold}; }
   void raise_targets(const std::vector<Fidelity>& reached);
-  void collect_leaves();
   std::vector<Fidelity> inherited_fidelity() const;
+  std::vector<Fidelity> fidelity() const;
   std::vector<Demand> demands() const;
   bool wants_refinement(TetRef leaf, const std::vector<Demand>& demands) const;
   template <class Visit>
-  void visit_parts(const VotedLeaf& leaf, const Visit& visit) const;
+  void visit_parts(const LabelledLeaf& leaf, const Visit& visit) const;
 
   const TissueImage& image_;
   const LatticePlan& plan_;
   std::vector<double> target_;  // fidelity to reach before the removal of label noise, by tissue
   Placement place_;
+  int deepest_;  // level for tissues and pieces; surfaces may be mended below it
   RedGreenLattice lattice_;
   VoxelVotes votes_;
-  std::vector<VotedLeaf> leaves_;
+  LabelledLeaves leaves_;
+  ImageComponents components_;
   int rounds_done_ = 0;
 };
 
 // Calls visit(vote, nodes, part) for a leaf, or for each of its green parts.
 template <class Visit>
-void LabelLattice::Impl::visit_parts(const VotedLeaf& leaf, const Visit& visit) const {
-  const GreenSplit& split = green_split(lattice_.split_edges(leaf.tet));
-  for (std::size_t c = 0; c < static_cast<std::size_t>(split.count); ++c) visit(leaf.votes[c], split.tets[c], c);
-}
-
-void LabelLattice::Impl::collect_leaves() {
-  leaves_.clear();
-  for (int level = 0; level <= lattice_.max_level(); ++level) {
-    for (std::uint32_t slot = 0; slot < lattice_.slot_count(level); ++slot) {
-      if (lattice_.is_leaf({level, slot})) leaves_.push_back({{level, slot}, {}});
-    }
-  }
-  parallel_for(leaves_.size(), [&](std::size_t i) {
-    VotedLeaf& leaf = leaves_[i];
-    if (lattice_.split_edges(leaf.tet) == 0) {
-      leaf.votes[0] = votes_.vote(leaf.tet);
-    } else {
-      leaf.votes = votes_.green_votes(leaf.tet);
-    }
-  });
+void LabelLattice::Impl::visit_parts(const LabelledLeaf& leaf, const Visit& visit) const {
+  const GreenSplit& split = leaf.split();
+  for (std::uint32_t c = 0; c < static_cast<std::uint32_t>(split.count); ++c) visit(leaf.votes[c], split.tets[c], c);
 }
 
 // Voxels of the pure tetrahedra that handed their label down without counting.
@@ -160,10 +149,10 @@ std::vector<Demand> LabelLattice::Impl::demands() const {
   std::vector<Fidelity> fidelity = inherited_fidelity();
   std::vector<Demand> demands(fidelity.size(), {0, true, false});
   std::vector<double> volume_mm3(fidelity.size(), 0);
-  for (const VotedLeaf& leaf : leaves_) {
+  for (const LabelledLeaf& leaf : leaves_.list()) {
     const double h = std::ldexp(plan_.bcc_size_mm, -leaf.tet.level);
-    const double part_mm3 = h * h * h / 12 / green_split(lattice_.split_edges(leaf.tet)).count;
-    visit_parts(leaf, [&](const Vote& v, const auto&, std::size_t) {
+    const double part_mm3 = h * h * h / 12 / leaf.split().count;
+    visit_parts(leaf, [&](const Vote& v, const auto&, std::uint32_t) {
       volume_mm3[v.tissue] += part_mm3;
       fidelity[v.tissue].in_tets += v.count;
       fidelity[v.tissue].hits += v.hits;
@@ -175,14 +164,13 @@ std::vector<Demand> LabelLattice::Impl::demands() const {
     const Fidelity& f = fidelity[t];
     if (f.f1() < target_[t] || f.f2() < target_[t]) demands[t].level_limit = plan_.levels;
     if (std::min(f.f1(), f.f2()) < plan_.fidelity[t] - kFarShort)
-      demands[t].level_limit = std::min(plan_.levels + 1, lattice_.max_level());
+      demands[t].level_limit = std::min(plan_.levels + 1, deepest_);
     const Vec3 s = image_.spacing_mm;
     const double off = std::abs(volume_mm3[t] / (static_cast<double>(image_.counts[t]) * s.x * s.y * s.z) - 1);
     const double far_off = kFarOff + 1 - plan_.fidelity[t];
     demands[t].thin = off > far_off;
-    if (demands[t].thin)
-      demands[t].level_limit = std::min(plan_.levels + (off > 2 * far_off ? 2 : 1), lattice_.max_level());
-    if (demands[t].absent) demands[t].level_limit = lattice_.max_level();
+    if (demands[t].thin) demands[t].level_limit = std::min(plan_.levels + (off > 2 * far_off ? 2 : 1), deepest_);
+    if (demands[t].absent) demands[t].level_limit = deepest_;
   }
   return demands;
 }
@@ -206,14 +194,15 @@ bool LabelLattice::Impl::wants_refinement(TetRef leaf, const std::vector<Demand>
 
 bool LabelLattice::Impl::refine_until_faithful(const Stage& stage) {
   for (int round = 0;; ++round) {
-    collect_leaves();
+    leaves_.collect(NewLabels::vote);
     stage.check_cancelled();
     const std::vector<Demand> asked = demands();
-    std::vector<char> wanted(leaves_.size());
-    parallel_for(leaves_.size(), [&](std::size_t i) { wanted[i] = wants_refinement(leaves_[i].tet, asked); });
+    std::vector<char> wanted(leaves_.list().size());
+    parallel_for(leaves_.list().size(),
+                 [&](std::size_t i) { wanted[i] = wants_refinement(leaves_.list()[i].tet, asked); });
     std::vector<TetRef> marked;
-    for (std::size_t i = 0; i < leaves_.size(); ++i) {
-      if (wanted[i]) marked.push_back(leaves_[i].tet);
+    for (std::size_t i = 0; i < leaves_.list().size(); ++i) {
+      if (wanted[i]) marked.push_back(leaves_.list()[i].tet);
     }
     if (marked.empty()) return round > 0;
     stage.check_cancelled();
@@ -231,111 +220,45 @@ void LabelLattice::Impl::raise_targets(const std::vector<Fidelity>& reached) {
   }
 }
 
-namespace {
-
-// Nodes 0 .. 9 of a leaf (vertices, edge midpoints), in units of the finest level.
-std::array<LatticePoint, 10> leaf_nodes(const RedGreenLattice& lattice, TetRef leaf) {
-  const LatticePoint b = lattice.barycentre(leaf);
-  std::array<LatticePoint, 10> nodes;
-  const auto vertices = bcc_vertices(b);
-  std::copy(vertices.begin(), vertices.end(), nodes.begin());
-  for (int e = 0; e < 6; ++e) nodes[static_cast<std::size_t>(4 + e)] = bcc_edge_midpoint(b, e);
-  for (LatticePoint& node : nodes) {
-    for (std::int32_t& c : node) c *= 1 << (lattice.max_level() - leaf.level);
+std::vector<Fidelity> LabelLattice::Impl::fidelity() const {
+  std::vector<Fidelity> fidelity = inherited_fidelity();
+  for (const LabelledLeaf& leaf : leaves_.list()) {
+    visit_parts(leaf, [&](const Vote& v, const auto&, std::uint32_t) {
+      fidelity[v.tissue].in_tets += v.count;
+      fidelity[v.tissue].hits += v.hits;
+    });
   }
-  return nodes;
+  return fidelity;
 }
 
-// Where a tetrahedron of the mesh comes from.
-struct Origin {
-  TetRef leaf;
-  std::uint32_t part;
-  Vote vote;
-};
-
-// Tetrahedra of the lattice, with numbered vertices.
-struct Extraction {
-  TissueMesh mesh;
-  std::vector<Origin> origins;  // one a tetrahedron
-  LatticePointMap vertices;
-
-  void add(const std::array<LatticePoint, 10>& nodes, const std::array<std::uint8_t, 4>& corners, bool positive,
-           const Origin& origin) {
-    std::array<VertexId, 4> tet;
-    for (std::size_t n = 0; n < 4; ++n) tet[n] = vertices.insert(nodes[corners[n]]);
-    if (!positive) std::swap(tet[2], tet[3]);
-    mesh.tets.push_back(tet);
-    mesh.tissues.push_back(origin.vote.tissue);
-    origins.push_back(origin);
-  }
-};
-
-}  // namespace
-
-LabelledLattice LabelLattice::Impl::extract(const Stage& stage) const {
-  Extraction taken;
-  std::uint32_t tissue_vertices = 0;
-  for (const bool cushion : {false, true}) {
-    for (const VotedLeaf& leaf : leaves_) {
-      const auto nodes = leaf_nodes(lattice_, leaf.tet);
-      const bool positive = is_positive(lattice_.barycentre(leaf.tet));
-      visit_parts(leaf, [&](const Vote& v, const auto& corners, std::size_t part) {
-        const auto on_tissue = [&](std::uint8_t n) { return taken.vertices.find(nodes[n]) < tissue_vertices; };
-        if ((v.tissue == 0) != cushion) return;
-        if (cushion && std::none_of(corners.begin(), corners.end(), on_tissue)) return;
-        taken.add(nodes, corners, positive, {leaf.tet, static_cast<std::uint32_t>(part), v});
-      });
-    }
-    stage.check_cancelled();
-    if (!cushion) tissue_vertices = static_cast<std::uint32_t>(taken.vertices.points().size());
-  }
-  const double fine_unit = place_.unit_mm / static_cast<double>(1 << lattice_.max_level());
-  for (const LatticePoint& p : taken.vertices.points()) {
-    taken.mesh.points_mm.push_back(place_.origin_mm + Vec3{fine_unit * p[0], fine_unit * p[1], fine_unit * p[2]});
-  }
-  const auto has_weak_vote = [&](TetId t) {
-    const Origin& origin = taken.origins[t];
-    return !votes_.hands_label_down(origin.leaf) && origin.vote.hits < VoxelVotes::kQuorum / 2;
-  };
-  clean_labels(taken.mesh, has_weak_vote);
-  stage.check_cancelled();
-
-  LabelledLattice result;
-  result.fidelity = inherited_fidelity();
-  for (std::size_t t = 0; t < taken.origins.size(); ++t) {
-    const Origin& origin = taken.origins[t];
-    const TissueId tissue = taken.mesh.tissues[t];
-    const bool kept = tissue == origin.vote.tissue;
-    result.fidelity[tissue].in_tets += origin.vote.count;
-    result.fidelity[tissue].hits += kept ? origin.vote.hits : votes_.voxels_of(origin.leaf, origin.part, tissue);
-  }
-  result.mesh = with_cushion_last(taken.mesh);
-  return result;
+LabelledLattice LabelLattice::Impl::make_whole(const Stage& stage) {
+  LeafMesh mended = mend_lattice(image_, components_, lattice_, votes_, leaves_, mend_plan(), stage);
+  return {with_cushion_only(std::move(mended.mesh)), fidelity()};
 }
 
 LabelledLattice LabelLattice::Impl::build(const Stage& stage) {
   constexpr int kAttempts = 3;
   stage.at(0.15);
-  LabelledLattice result;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     if (!refine_until_faithful(stage) && attempt > 0) break;
     stage.check_cancelled();
-    result = extract(stage);
-    raise_targets(result.fidelity);
+    clean_leaves(lattice_, votes_, leaves_, mend_plan());
+    raise_targets(fidelity());
   }
+  LabelledLattice result = make_whole(stage);
   stage.at(1);
   return result;
 }
 
 // The leaves with most wrong voxels first, until those taken hold as many as each tissue has to mend.
 std::vector<TetRef> LabelLattice::Impl::leaves_to_mend(const FidelityGap& gap) const {
-  std::vector<std::uint32_t> wrong(leaves_.size(), 0);
-  parallel_for(leaves_.size(), [&](std::size_t i) {
-    if (leaves_[i].tet.level >= lattice_.max_level()) return;
-    for (const std::uint32_t v : votes_.voxels(leaves_[i].tet)) wrong[i] += gap.wrong[v] != 0;
+  std::vector<std::uint32_t> wrong(leaves_.list().size(), 0);
+  parallel_for(leaves_.list().size(), [&](std::size_t i) {
+    if (leaves_.list()[i].tet.level >= lattice_.max_level()) return;
+    for (const std::uint32_t v : votes_.voxels(leaves_.list()[i].tet)) wrong[i] += gap.wrong[v] != 0;
   });
   std::vector<std::uint32_t> order;
-  for (std::uint32_t i = 0; i < leaves_.size(); ++i) {
+  for (std::uint32_t i = 0; i < leaves_.list().size(); ++i) {
     if (wrong[i] > 0) order.push_back(i);
   }
   std::ranges::stable_sort(order, std::greater<>(), [&](std::uint32_t i) { return wrong[i]; });
@@ -343,13 +266,13 @@ std::vector<TetRef> LabelLattice::Impl::leaves_to_mend(const FidelityGap& gap) c
   std::vector<TetRef> marked;
   for (const std::uint32_t i : order) {
     bool wanted = false;
-    for (const std::uint32_t v : votes_.voxels(leaves_[i].tet)) {
+    for (const std::uint32_t v : votes_.voxels(leaves_.list()[i].tet)) {
       const TissueId t = gap.wrong[v];
-      if (t == 0 || open[t] == 0 || leaves_[i].tet.level >= plan_.levels) continue;
+      if (t == 0 || open[t] == 0 || leaves_.list()[i].tet.level >= plan_.levels) continue;
       --open[t];
       wanted = true;
     }
-    if (wanted) marked.push_back(leaves_[i].tet);
+    if (wanted) marked.push_back(leaves_.list()[i].tet);
   }
   return marked;
 }
@@ -358,9 +281,10 @@ std::optional<LabelledLattice> LabelLattice::Impl::refine(const FidelityGap& gap
   const std::vector<TetRef> marked = leaves_to_mend(gap);
   if (marked.empty()) return std::nullopt;
   votes_.descend(lattice_.refine(marked));
-  collect_leaves();
+  leaves_.collect(NewLabels::vote);
   stage.check_cancelled();
-  return extract(stage);
+  clean_leaves(lattice_, votes_, leaves_, mend_plan());
+  return make_whole(stage);
 }
 
 LabelLattice::LabelLattice(const TissueImage& image, const LatticePlan& plan)

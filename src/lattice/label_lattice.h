@@ -16,10 +16,11 @@ namespace anatomesh {
 
 /// What the lattice is asked for; sizes are in millimetres.
 struct LatticePlan {
-  double bcc_size_mm = 8;        ///< spacing of the coarsest lattice
-  int levels = 2;                ///< red refinements that fidelity may ask for: smallest spacing bcc_size / 2^levels
-  int extra_levels = 3;          ///< further ones for a tissue that would have no tetrahedron at all
-  std::vector<double> fidelity;  ///< F by tissue, [0] unused
+  double bcc_size_mm = 8;           ///< spacing of the coarsest lattice
+  int levels = 2;                   ///< red refinements that fidelity may ask for: smallest spacing bcc_size / 2^levels
+  int extra_levels = 3;             ///< further ones for a tissue that would have no tetrahedron at all
+  std::vector<double> fidelity;     ///< F by tissue, [0] unused
+  bool allow_non_manifold = false;  ///< leaves the tissues' surfaces as the labels make them
 };
 
 /// Fidelity of one tissue (section "fidelity" of the paper): S1 is the set of voxels in its tetrahedra, S2 the set of

@@ -162,6 +162,25 @@ void VoxelVotes::hand_down(TetRef parent) {
   }
 }
 
+void VoxelVotes::keep_voxels(TetRef t) {
+  const auto level = static_cast<std::size_t>(t.level);
+  if (begin_[level][t.slot] == kInherited) {
+    TetRef parent;
+    lattice_.find(t.level - 1, bcc_parent(lattice_.barycentre(t)), parent);
+    keep_voxels(parent);
+    hand_down_again(parent);
+  }
+  votes_[level][t.slot].pure = false;
+}
+
+// To all below it that do not hand a label down.
+void VoxelVotes::hand_down_again(TetRef parent) {
+  hand_down(parent);
+  for (const TetRef child : lattice_.children(parent)) {
+    if (lattice_.is_refined(child) && !hands_label_down(child)) hand_down_again(child);
+  }
+}
+
 std::span<const std::uint32_t> VoxelVotes::voxels(TetRef t) const {
   const auto level = static_cast<std::size_t>(t.level);
   const Vote& v = votes_[level][t.slot];
@@ -182,12 +201,15 @@ const VoxelVotes::GreenVoxels& VoxelVotes::voxels_of_green_parts(TetRef leaf) co
   return parts;
 }
 
+std::span<const std::uint32_t> VoxelVotes::voxels_of_part(TetRef leaf, std::size_t part) const {
+  if (lattice_.split_edges(leaf) == 0) return voxels(leaf);
+  return voxels_of_green_parts(leaf)[part];
+}
+
 std::uint32_t VoxelVotes::voxels_of(TetRef leaf, std::size_t part, TissueId tissue) const {
-  const auto has_tissue = [&](std::uint32_t v) { return image_.voxels[v] == tissue; };
-  const std::span<const std::uint32_t> all = lattice_.split_edges(leaf) == 0
-                                                 ? voxels(leaf)
-                                                 : std::span<const std::uint32_t>(voxels_of_green_parts(leaf)[part]);
-  return static_cast<std::uint32_t>(std::count_if(all.begin(), all.end(), has_tissue));
+  const auto all = voxels_of_part(leaf, part);
+  return static_cast<std::uint32_t>(
+      std::count_if(all.begin(), all.end(), [&](std::uint32_t v) { return image_.voxels[v] == tissue; }));
 }
 
 std::array<Vote, 4> VoxelVotes::green_votes(TetRef leaf) const {

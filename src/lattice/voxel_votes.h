@@ -29,6 +29,10 @@ class VoxelVotes {
   /// Hands the voxels of newly refined tetrahedra to their children. Parents before children.
   void descend(const std::vector<TetRef>& refined);
 
+  /// From now on the children of a tetrahedron know their voxels, though it is pure and large or inside such a one. For
+  /// leaves whose label a repair may change.
+  void keep_voxels(TetRef t);
+
   const Vote& vote(TetRef t) const { return votes_[static_cast<std::size_t>(t.level)][t.slot]; }
 
   /// Voxels of a tetrahedron, as offsets in the image; empty for one inside a large pure one.
@@ -43,6 +47,10 @@ class VoxelVotes {
 
   /// Votes of the green parts of a leaf with split edges, in the order of green_split().
   std::array<Vote, 4> green_votes(TetRef leaf) const;
+
+  /// Voxels of a leaf (part 0 of one without split edges) or of one of its green parts, as offsets in the image. Good
+  /// until the thread's next call.
+  std::span<const std::uint32_t> voxels_of_part(TetRef leaf, std::size_t part) const;
 
   /// Voxels of a tissue in a leaf (part 0 of one without split edges) or in one of its green parts.
   std::uint32_t voxels_of(TetRef leaf, std::size_t part, TissueId tissue) const;
@@ -60,6 +68,7 @@ class VoxelVotes {
   void sort_into_roots();
   const GreenVoxels& voxels_of_green_parts(TetRef leaf) const;
   void hand_down(TetRef parent);
+  void hand_down_again(TetRef parent);
   Vec3 position(std::uint32_t voxel, int level) const;
   Vote count_votes(std::span<const std::uint32_t> voxels, const std::array<Vec3, 4>& corners) const;
   TissueId interpolated_tissue(const std::array<Vec3, 4>& corners) const;

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace anatomesh::assess_detail {
+namespace anatomesh {
 
 class DisjointSets {
  public:
@@ -43,4 +43,4 @@ class DisjointSets {
   std::vector<std::uint32_t> parent_;
 };
 
-}  // namespace anatomesh::assess_detail
+}  // namespace anatomesh

@@ -1,0 +1,482 @@
+#include "lattice/mend_pieces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <queue>
+#include <tuple>
+#include <unordered_map>
+#include <utility>
+
+#include "base/disjoint_sets.h"
+#include "base/parallel.h"
+#include "base/vec.h"
+
+namespace anatomesh {
+namespace {
+
+constexpr std::uint32_t kNone = Pieces::kNone;
+
+// Tetrahedra above these volumes (in voxels) are refined before they are relabelled.
+constexpr float kSeedSize = 1.0f;   // to stand for a component
+constexpr float kPathSize = 1.0f;   // to join pieces
+constexpr float kCutSize = 0.7f;    // to separate components
+constexpr float kTightSize = 0.1f;  // to do so where a tetrahedron holds voxels of the tissue it would lose
+
+Vec3 centroid(const TissueMesh& mesh, TetId t) {
+  Vec3 sum;
+  for (const VertexId v : mesh.tets[t]) sum += 0.25 * mesh.points_mm[v];
+  return sum;
+}
+
+// The component that a tetrahedron stands for, and by how many voxels of it.
+struct Claim {
+  std::uint32_t component = kNone;
+  std::uint32_t voxels = 0;
+};
+
+// Voxels of a component in a piece.
+struct Holding {
+  std::uint32_t piece, component, voxels;
+};
+
+class PieceMender {
+ public:
+  PieceMender(TetComplex& complex, Pieces& pieces, const TissueImage& image, const ImageComponents& components,
+              const TetContents& contents)
+      : complex_(complex),
+        pieces_(pieces),
+        image_(image),
+        components_(components),
+        contents_(contents),
+        price_(voxel_price(complex, image, contents)),
+        locked_(contents.decided) {}
+
+  PieceRepair run() {
+    constexpr int kPasses = 4;
+    std::size_t done = 0;
+    for (int pass = 0; pass < kPasses; ++pass) {
+      repair_.refine.clear();
+      find_open_tissues();
+      if (std::none_of(open_.begin(), open_.end(), [](char open) { return open; })) break;
+      find_claims(done);
+      done = repair_.changed.size();
+      find_holdings();
+      dissolve_empty_pieces();
+      seed_absent_components();
+      cut_shared_pieces();
+      join_pieces();
+      if (repair_.changed.size() == done) break;
+      pieces_ = find_pieces(complex_);
+    }
+    std::sort(repair_.refine.begin(), repair_.refine.end());
+    repair_.refine.erase(std::unique(repair_.refine.begin(), repair_.refine.end()), repair_.refine.end());
+    return repair_;
+  }
+
+ private:
+  void find_open_tissues();
+  Claim claim_of(TetId t) const;
+  void find_claims(std::size_t done);
+  void find_holdings();
+  void dissolve_empty_pieces();
+  void seed_absent_components();
+  void cut_shared_pieces();
+  void cut(const std::vector<TetId>& tets);
+  void cut_face(TetId a, TetId b);
+  void join_pieces();
+  double path_cost(TetId t, TissueId tissue) const;
+  void join_piece(std::uint32_t piece, const std::vector<TetId>& tets, DisjointSets& joined);
+
+  std::vector<std::vector<TetId>> tets_of(const std::vector<char>& wanted) const;
+  TissueId other_tissue(TetId t) const;
+  bool touches_other_component(TetId t, std::uint32_t component) const;
+  void relabel(TetId t, TissueId tissue, std::uint32_t piece);
+  std::uint32_t main_of(TetId t) const { return pieces_.of_tet[t] == kNone ? kNone : main_[pieces_.of_tet[t]]; }
+  bool wants_refinement(TetId t, float size) {
+    if (contents_.sizes[t] <= size || !contents_.may_refine[t]) return false;
+    repair_.refine.push_back(t);
+    return true;
+  }
+
+  TetComplex& complex_;
+  Pieces& pieces_;
+  const TissueImage& image_;
+  const ImageComponents& components_;
+  const TetContents& contents_;
+  RelabelPrice price_;
+  std::vector<char> locked_;  // relabelled by a repair: others go around it
+  PieceRepair repair_;
+
+  std::vector<char> open_;           // by tissue: more than one piece or component
+  std::vector<char> claimed_;        // by tissue: its claims are known
+  std::vector<Claim> claims_;        // by tetrahedron, of open tissues
+  std::vector<Holding> holdings_;    // by piece and component
+  std::vector<std::uint32_t> main_;  // by piece: the component that it has most voxels of, kNone for none
+  std::vector<std::uint32_t> home_;  // by component: the piece that has most of its voxels, kNone for none
+};
+
+void PieceMender::find_open_tissues() {
+  const auto components = components_.count_by_tissue(image_.labels.size());
+  std::vector<std::uint32_t> pieces(image_.labels.size(), 0);
+  for (const auto& piece : pieces_.list) ++pieces[piece.tissue];
+  open_.assign(image_.labels.size(), 0);
+  for (std::size_t t = 1; t < open_.size(); ++t) open_[t] = pieces[t] != 1 || components[t] != 1;
+}
+
+// A tetrahedron without a voxel of its tissue stands for the component around its centre, by no voxel.
+Claim PieceMender::claim_of(TetId t) const {
+  const TissueId own = complex_.tissue(t);
+  std::array<Claim, 4> found;  // more than four components in one tetrahedron: the first four
+  std::size_t count = 0;
+  const auto voxels = contents_.voxels(t);
+  constexpr std::size_t kMany = 64;
+  for (const std::uint32_t v : voxels) {
+    if (image_.voxels[v] != own) continue;
+    const std::uint32_t component = components_.of(v);
+    std::size_t n = 0;
+    while (n < count && found[n].component != component) ++n;
+    if (n == found.size()) continue;
+    if (n == count) found[count++].component = component;
+    ++found[n].voxels;
+    if (voxels.size() > kMany && contents_.fixed[t]) return {component, static_cast<std::uint32_t>(voxels.size())};
+  }
+  const auto more = [](const Claim& a, const Claim& b) {
+    return std::pair(a.voxels, b.component) < std::pair(b.voxels, a.component);
+  };
+  if (count > 0) return *std::max_element(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count), more);
+  const auto voxel = voxel_at(image_, centroid(complex_.mesh, t));
+  if (voxel && image_.voxels[*voxel] == own) return {components_.of(*voxel), 0};
+  return {};
+}
+
+// Of the tissues that were not open before, and of the tetrahedra relabelled since `done`.
+void PieceMender::find_claims(std::size_t done) {
+  claims_.resize(complex_.mesh.tets.size());
+  claimed_.resize(open_.size());
+  for (std::size_t i = done; i < repair_.changed.size(); ++i) {
+    const TetId t = repair_.changed[i];
+    claims_[t] = open_[complex_.tissue(t)] ? claim_of(t) : Claim{};
+  }
+  if (claimed_ != open_) {
+    parallel_for(claims_.size(), [&](std::size_t t) {
+      const TissueId tissue = complex_.mesh.tissues[t];
+      if (open_[tissue] && !claimed_[tissue]) claims_[t] = claim_of(static_cast<TetId>(t));
+    });
+  }
+  for (std::size_t t = 0; t < open_.size(); ++t) claimed_[t] = claimed_[t] || open_[t];
+}
+
+void PieceMender::find_holdings() {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> voxels;
+  std::pair<std::uint32_t, std::uint32_t> last = {kNone, kNone};
+  std::uint32_t* sum = nullptr;
+  for (TetId t = 0; t < claims_.size(); ++t) {
+    if (claims_[t].component == kNone || !open_[complex_.tissue(t)]) continue;
+    const std::pair key = {pieces_.of_tet[t], claims_[t].component};
+    if (key != last || !sum) sum = &voxels[key];
+    last = key;
+    *sum += claims_[t].voxels;
+  }
+  holdings_.clear();
+  main_.assign(pieces_.list.size(), kNone);
+  home_.assign(components_.list().size(), kNone);
+  std::vector<std::uint32_t> most_of_piece(main_.size(), 0), most_of_component(home_.size(), 0);
+  for (const auto& [key, count] : voxels) {
+    const auto [piece, component] = key;
+    if (main_[piece] == kNone || count > most_of_piece[piece]) {
+      main_[piece] = component;
+      most_of_piece[piece] = count;
+    }
+    if (home_[component] == kNone || count > most_of_component[component]) {
+      home_[component] = piece;
+      most_of_component[component] = count;
+    }
+    holdings_.push_back({piece, component, count});
+  }
+  // A component whose home is mainly another's may be at home in a piece of its own elsewhere.
+  for (const Holding& h : holdings_) {
+    if (main_[home_[h.component]] != h.component && main_[h.piece] == h.component) home_[h.component] = h.piece;
+  }
+}
+
+std::vector<std::vector<TetId>> PieceMender::tets_of(const std::vector<char>& wanted) const {
+  std::vector<std::vector<TetId>> tets(pieces_.list.size());
+  for (TetId t = 0; t < pieces_.of_tet.size(); ++t) {
+    if (const std::uint32_t piece = pieces_.of_tet[t]; piece != kNone && wanted[piece]) tets[piece].push_back(t);
+  }
+  return tets;
+}
+
+void PieceMender::relabel(TetId t, TissueId tissue, std::uint32_t piece) {
+  complex_.mesh.tissues[t] = tissue;
+  pieces_.of_tet[t] = piece;
+  locked_[t] = 1;
+  repair_.changed.push_back(t);
+}
+
+// Pieces without a voxel of their tissue go to the neighbour behind most of their faces, unless one is all that its
+// component has.
+void PieceMender::dissolve_empty_pieces() {
+  std::vector<char> empty(pieces_.list.size());
+  for (std::size_t p = 0; p < empty.size(); ++p) empty[p] = open_[pieces_.list[p].tissue];
+  for (const Holding& h : holdings_) {
+    if (h.voxels > 0 || home_[h.component] == h.piece) empty[h.piece] = 0;
+  }
+  for (const auto& tets : tets_of(empty)) {
+    std::map<TissueId, std::uint32_t> faces;
+    for (const TetId t : tets) {
+      for (const TetId other : complex_.behind[t]) {
+        if (complex_.tissue(other) != complex_.tissue(t)) ++faces[complex_.tissue(other)];
+      }
+    }
+    if (faces.empty()) continue;
+    const auto best =
+        std::max_element(faces.begin(), faces.end(), [](auto& a, auto& b) { return a.second < b.second; });
+    for (const TetId t : tets) {
+      relabel(t, best->first, kNone);
+      locked_[t] = 0;
+    }
+  }
+}
+
+void PieceMender::seed_absent_components() {
+  std::vector<char> absent_in(image_.labels.size());
+  bool any = false;
+  for (std::size_t c = 0; c < home_.size(); ++c) {
+    const TissueId tissue = components_.list()[c].tissue;
+    if (!open_[tissue] || home_[c] != kNone) continue;
+    absent_in[tissue] = 1;
+    any = true;
+  }
+  if (!any) return;
+  std::vector<std::vector<Claim>> found(complex_.mesh.tets.size());  // voxels of absent components
+  parallel_for(found.size(), [&](std::size_t t) {
+    for (const std::uint32_t v : contents_.voxels(static_cast<TetId>(t))) {
+      if (!absent_in[image_.voxels[v]]) continue;
+      const std::uint32_t component = components_.of(v);
+      if (home_[component] != kNone) continue;
+      auto& list = found[t];
+      const auto at = std::find_if(list.begin(), list.end(), [&](const Claim& c) { return c.component == component; });
+      if (at == list.end()) {
+        list.push_back({component, 1});
+      } else {
+        ++at->voxels;
+      }
+    }
+  });
+  struct Seed {
+    double price = kTooDear;
+    TetId tet = 0;
+  };
+  std::map<std::uint32_t, Seed> seeds;
+  for (TetId t = 0; t < found.size(); ++t) {
+    for (const Claim& c : found[t]) {
+      Seed& seed = seeds[c.component];
+      if (wants_refinement(t, kSeedSize)) continue;
+      if (touches_other_component(t, c.component)) {
+        wants_refinement(t, kTightSize / 4);
+        continue;
+      }
+      const double price = price_(t, components_.list()[c.component].tissue) - c.voxels;
+      if (price < seed.price) seed = {price, t};
+    }
+  }
+  for (const auto& [component, seed] : seeds) {
+    if (seed.price < kTooDear) relabel(seed.tet, components_.list()[component].tissue, kNone);
+  }
+}
+
+// Whether a tetrahedron has a face toward a piece of another component of the same tissue.
+bool PieceMender::touches_other_component(TetId t, std::uint32_t component) const {
+  const TissueId tissue = components_.list()[component].tissue;
+  return std::any_of(complex_.behind[t].begin(), complex_.behind[t].end(), [&](TetId other) {
+    return other != t && complex_.tissue(other) == tissue && main_of(other) != component;
+  });
+}
+
+void PieceMender::cut_shared_pieces() {
+  std::vector<char> shared(pieces_.list.size());
+  for (std::uint32_t c = 0; c < home_.size(); ++c) {
+    if (home_[c] == kNone || main_[home_[c]] == c) continue;
+    shared[home_[c]] = 1;
+  }
+  for (const auto& tets : tets_of(shared)) {
+    if (!tets.empty()) cut(tets);
+  }
+}
+
+// Grows the components that are at home in a piece until they meet, and cuts there.
+void PieceMender::cut(const std::vector<TetId>& tets) {
+  const std::uint32_t piece = pieces_.of_tet[tets.front()];
+  std::unordered_map<TetId, std::uint32_t> region;
+  std::vector<TetId> front;
+  for (const TetId t : tets) {
+    const std::uint32_t c = claims_[t].component;
+    if (c == kNone || home_[c] != piece || claims_[t].voxels == 0) continue;
+    region[t] = c;
+    front.push_back(t);
+  }
+  for (std::size_t i = 0; i < front.size(); ++i) {
+    const std::uint32_t c = region[front[i]];
+    for (const TetId other : complex_.behind[front[i]]) {
+      if (pieces_.of_tet[other] == piece && region.emplace(other, c).second) front.push_back(other);
+    }
+  }
+  std::sort(front.begin(), front.end());
+  for (const TetId t : front) {
+    for (const TetId other : complex_.behind[t]) {
+      if (other < t && pieces_.of_tet[other] == piece && pieces_.of_tet[t] == piece && region[other] != region[t])
+        cut_face(other, t);
+    }
+  }
+}
+
+// One of two tetrahedra that join two components gets another tissue: the one with fewer voxels of its own.
+void PieceMender::cut_face(TetId a, TetId b) {
+  const TetId t =
+      std::tuple(claims_[a].voxels, contents_.sizes[a], a) <= std::tuple(claims_[b].voxels, contents_.sizes[b], b) ? a
+                                                                                                                   : b;
+  if (wants_refinement(t, claims_[t].voxels > 0 ? kTightSize : kCutSize)) {
+    wants_refinement(t == a ? b : a, kCutSize);
+    return;
+  }
+  if (!contents_.fixed[t]) relabel(t, other_tissue(t), kNone);
+}
+
+// What a tetrahedron holds most of besides its own tissue; else what its centre lies in, or what lies behind it.
+TissueId PieceMender::other_tissue(TetId t) const {
+  const TissueId own = complex_.tissue(t);
+  std::map<TissueId, std::uint32_t> votes;
+  const auto vote = [&](TissueId tissue) {
+    if (tissue != own) ++votes[tissue];
+  };
+  for (const std::uint32_t v : contents_.voxels(t)) vote(image_.voxels[v]);
+  if (votes.empty()) {
+    if (const auto voxel = voxel_at(image_, centroid(complex_.mesh, t))) vote(image_.voxels[*voxel]);
+  }
+  if (votes.empty()) {
+    for (const TetId other : complex_.behind[t]) vote(complex_.tissue(other));
+  }
+  if (votes.empty()) return 0;
+  return std::max_element(votes.begin(), votes.end(), [](auto& a, auto& b) { return a.second < b.second; })->first;
+}
+
+void PieceMender::join_pieces() {
+  std::vector<std::uint32_t> pieces_of(components_.list().size(), 0);
+  for (std::size_t p = 0; p < main_.size(); ++p) {
+    if (main_[p] != kNone && pieces_.list[p].tets > 0) ++pieces_of[main_[p]];
+  }
+  std::vector<char> scattered(pieces_.list.size());
+  for (std::uint32_t p = 0; p < main_.size(); ++p)
+    scattered[p] = main_[p] != kNone && pieces_of[main_[p]] > 1 && home_[main_[p]] != p;
+  const auto tets = tets_of(scattered);
+  std::vector<std::uint32_t> order;
+  for (std::uint32_t p = 0; p < tets.size(); ++p) {
+    if (!tets[p].empty()) order.push_back(p);
+  }
+  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return tets[a].size() < tets[b].size(); });
+  DisjointSets joined(pieces_.list.size());
+  for (const std::uint32_t p : order) join_piece(p, tets[p], joined);
+}
+
+// What it costs, in voxels, to lead a path of a tissue through a tetrahedron of another. One that will be refined first
+// counts by its width, less where it holds voxels of the tissue.
+double PieceMender::path_cost(TetId t, TissueId tissue) const {
+  constexpr double kLocked = 8, kSplits = 5;
+  const auto size = static_cast<double>(contents_.sizes[t]);
+  if (contents_.may_refine[t] && (contents_.fixed[t] || contents_.sizes[t] > kPathSize)) {
+    const auto voxels = contents_.voxels(t);
+    const bool leads_there =
+        std::any_of(voxels.begin(), voxels.end(), [&](auto v) { return image_.voxels[v] == tissue; });
+    return leads_there ? 0.5 : 1 + std::cbrt(size);
+  }
+  double cost = price_(t, tissue) + 0.2 * size + 0.05;
+  if (locked_[t]) cost += kLocked;
+  if (complex_.tissue(t) != 0 && !neighbours_hang_together(complex_, t)) cost += kSplits;
+  return cost;
+}
+
+// Dijkstra's algorithm from a piece to the nearest other piece of the same component.
+void PieceMender::join_piece(std::uint32_t piece, const std::vector<TetId>& tets, DisjointSets& joined) {
+  constexpr double kReach = 40;
+  constexpr std::size_t kMaxVisited = 20000;
+  const TissueId tissue = pieces_.list[piece].tissue;
+  const std::uint32_t component = main_[piece];
+  struct Step {
+    double cost;
+    TetId tet, from;
+    bool operator>(const Step& o) const { return std::tie(cost, tet) > std::tie(o.cost, o.tet); }
+  };
+  std::priority_queue<Step, std::vector<Step>, std::greater<>> open;
+  std::unordered_map<TetId, TetId> came_from;
+  for (const TetId t : tets) {
+    if (complex_.tissue(t) == tissue) open.push({0, t, t});  // another path may have taken it
+  }
+  TetId end = 0, last = 0;
+  bool found = false;
+  while (!open.empty() && came_from.size() < kMaxVisited) {
+    const Step step = open.top();
+    open.pop();
+    if (!came_from.emplace(step.tet, step.from).second) continue;
+    if (complex_.tissue(step.tet) == tissue && pieces_.of_tet[step.tet] != kNone &&
+        joined.root(pieces_.of_tet[step.tet]) != joined.root(piece)) {
+      end = step.from, last = step.tet, found = true;
+      break;
+    }
+    for (const TetId other : complex_.behind[step.tet]) {
+      if (came_from.count(other)) continue;
+      if (complex_.tissue(other) == tissue) {
+        if (main_of(other) == component) open.push({step.cost, other, step.tet});
+        continue;
+      }
+      if (touches_other_component(other, component)) continue;
+      const double cost = path_cost(other, tissue);
+      if (step.cost + cost < kReach) open.push({step.cost + cost, other, step.tet});
+    }
+  }
+  if (!found) {
+    for (const TetId t : tets) wants_refinement(t, kPathSize);
+    return;
+  }
+  std::vector<TetId> path;
+  for (TetId t = end; complex_.tissue(t) != tissue; t = came_from.at(t)) path.push_back(t);
+  bool too_large = false;
+  for (const TetId t : path) {
+    const float size = contents_.fixed[t] ? 0 : kPathSize;
+    too_large = (price_(t, tissue) > 0 && wants_refinement(t, size)) || too_large;
+  }
+  if (too_large) return;
+  for (const TetId t : path) relabel(t, tissue, piece);
+  joined.join(piece, pieces_.of_tet[last]);
+}
+
+}  // namespace
+
+std::optional<std::uint32_t> voxel_at(const TissueImage& image, Vec3 point_mm) {
+  std::array<int, 3> index;
+  for (std::size_t a = 0; a < 3; ++a)
+    index[a] = static_cast<int>(std::lround(point_mm[a] / image.spacing_mm[a] - static_cast<double>(image.first[a])));
+  if (!image.contains(index[0], index[1], index[2])) return std::nullopt;
+  return static_cast<std::uint32_t>(image.offset(index[0], index[1], index[2]));
+}
+
+RelabelPrice voxel_price(const TetComplex& complex, const TissueImage& image, const TetContents& contents) {
+  return [&complex, &image, &contents](TetId t, TissueId tissue) {
+    if (contents.fixed[t]) return 2 * kTooDear;
+    double price = 0;
+    for (const std::uint32_t v : contents.voxels(t)) {
+      price += image.voxels[v] == complex.tissue(t);
+      price -= image.voxels[v] == tissue;
+    }
+    return std::max(0.0, price);
+  };
+}
+
+PieceRepair mend_pieces(TetComplex& complex, Pieces& pieces, const TissueImage& image,
+                        const ImageComponents& components, const TetContents& contents) {
+  return PieceMender(complex, pieces, image, components, contents).run();
+}
+
+}  // namespace anatomesh

@@ -1,0 +1,416 @@
+#include "lattice/mend_surfaces.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <numeric>
+#include <utility>
+
+#include "base/disjoint_sets.h"
+#include "base/parallel.h"
+
+namespace anatomesh {
+namespace {
+
+// The tetrahedra around a vertex, grouped into fans: those of one tissue reached through faces at the vertex.
+class Star {
+ public:
+  Star(const TetComplex& complex, VertexId v) : complex_(complex), tets_(complex.tets_of_vertex[v]), vertex_(v) {}
+
+  unsigned defect() {
+    const TissueId first = complex_.tissue(tets_[0]);
+    if (std::all_of(tets_.begin(), tets_.end(), [&](TetId t) { return complex_.tissue(t) == first; })) return 0;
+    group_into_fans();
+    std::sort(tissues_.begin(), tissues_.end());
+    tissues_.erase(std::unique(tissues_.begin(), tissues_.end()), tissues_.end());
+    unsigned defect = static_cast<unsigned>(fans_ - tissues_.size());
+    if (tissues_.size() == 2) return 2 * defect;  // the rest of one is the other
+    for (const TissueId tissue : tissues_) defect += pieces_without(tissue) - 1;
+    return defect;
+  }
+
+ private:
+  // Calls visit(i, j) for tetrahedra i and j of the star that share a face at the vertex.
+  template <class Visit>
+  void for_each_face(const Visit& visit) const {
+    for (std::size_t i = 0; i < tets_.size(); ++i) {
+      const auto& tet = complex_.mesh.tets[tets_[i]];
+      for (std::size_t n = 0; n < 4; ++n) {
+        const TetId other = complex_.behind[tets_[i]][n];
+        if (tet[n] == vertex_ || other >= tets_[i]) continue;
+        visit(i, static_cast<std::size_t>(std::lower_bound(tets_.begin(), tets_.end(), other) - tets_.begin()));
+      }
+    }
+  }
+
+  void group_into_fans() {
+    parent_.resize(tets_.size());
+    std::iota(parent_.begin(), parent_.end(), std::uint16_t{0});
+    rims_.clear();
+    for_each_face([&](std::size_t i, std::size_t j) {
+      if (complex_.tissue(tets_[i]) == complex_.tissue(tets_[j])) {
+        join(i, j);
+      } else {
+        rims_.emplace_back(static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(j));
+      }
+    });
+    tissues_.clear();
+    fans_ = 0;
+    for (std::size_t i = 0; i < tets_.size(); ++i) {
+      if (parent_[i] != i) continue;
+      ++fans_;
+      tissues_.push_back(complex_.tissue(tets_[i]));
+    }
+  }
+
+  // Pieces of the star without the fans of a tissue.
+  unsigned pieces_without(TissueId tissue) {
+    const std::vector<std::uint16_t> fans = parent_;
+    unsigned pieces = 0;
+    for (std::size_t i = 0; i < tets_.size(); ++i) pieces += fans[i] == i && complex_.tissue(tets_[i]) != tissue;
+    for (const auto& [i, j] : rims_) {
+      if (complex_.tissue(tets_[i]) != tissue && complex_.tissue(tets_[j]) != tissue) pieces -= join(i, j);
+    }
+    parent_ = fans;
+    return pieces;
+  }
+
+  std::size_t root(std::size_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  bool join(std::size_t i, std::size_t j) {
+    i = root(i);
+    j = root(j);
+    parent_[std::max(i, j)] = static_cast<std::uint16_t>(std::min(i, j));
+    return i != j;
+  }
+
+  const TetComplex& complex_;
+  std::span<const TetId> tets_;
+  VertexId vertex_;
+  std::size_t fans_ = 0;
+  std::vector<TissueId> tissues_;                              // around the vertex
+  std::vector<std::uint16_t> parent_;                          // union-find over the star
+  std::vector<std::pair<std::uint16_t, std::uint16_t>> rims_;  // faces between two tissues
+};
+
+unsigned defect_around(const TetComplex& complex, TetId t) {
+  unsigned sum = 0;
+  for (const VertexId v : complex.mesh.tets[t]) sum += star_defect(complex, v);
+  return sum;
+}
+
+// Whether giving these tetrahedra to a tissue joins none of its pieces and makes no other piece vanish.
+bool joins_no_pieces(const TetComplex& complex, const Pieces& pieces, std::span<const TetId> tets, TissueId tissue) {
+  std::map<std::uint32_t, std::uint32_t> taken;
+  std::uint32_t joined = Pieces::kNone;
+  bool joins = false;
+  const auto touch = [&](TetId t) {
+    if (tissue == 0 || complex.tissue(t) != tissue) return;
+    joins = joins || (joined != Pieces::kNone && joined != pieces.of_tet[t]);
+    joined = pieces.of_tet[t];
+  };
+  for (const TetId t : tets) {
+    touch(t);
+    for (const TetId other : complex.behind[t]) touch(other);
+    if (complex.tissue(t) != 0 && complex.tissue(t) != tissue) ++taken[pieces.of_tet[t]];
+  }
+  return !joins && std::none_of(taken.begin(), taken.end(),
+                                [&](const auto& piece) { return pieces.list[piece.first].tets <= piece.second; });
+}
+
+// Whether the tetrahedra of a tissue behind the faces of some (the fan), outside a group (ascending) that holds the
+// fan, hang together around the fan without the group.
+bool hangs_together_without(const TetComplex& complex, std::span<const TetId> fan, TissueId tissue,
+                            std::span<const TetId> group) {
+  const auto stays = [&](TetId t) {
+    return complex.tissue(t) == tissue && !std::binary_search(group.begin(), group.end(), t);
+  };
+  std::vector<TetId> wanted, around;
+  for (const TetId t : fan) {
+    for (const TetId other : complex.behind[t]) {
+      if (stays(other)) wanted.push_back(other);
+    }
+  }
+  if (wanted.size() < 2) return true;
+  for (const TetId t : fan) {
+    for (const VertexId v : complex.mesh.tets[t]) {
+      for (const TetId other : complex.tets_of_vertex[v]) {
+        if (stays(other)) around.push_back(other);
+      }
+    }
+  }
+  std::sort(around.begin(), around.end());
+  around.erase(std::unique(around.begin(), around.end()), around.end());
+  std::vector<char> seen(around.size(), 0);
+  const auto place = [&](TetId t) {
+    return static_cast<std::size_t>(std::lower_bound(around.begin(), around.end(), t) - around.begin());
+  };
+  std::vector<TetId> reached = {wanted.front()};
+  seen[place(wanted.front())] = 1;
+  for (std::size_t i = 0; i < reached.size(); ++i) {
+    for (const TetId other : complex.behind[reached[i]]) {
+      const std::size_t at = place(other);
+      if (at == around.size() || around[at] != other || seen[at]) continue;
+      seen[at] = 1;
+      reached.push_back(other);
+    }
+  }
+  return std::all_of(wanted.begin(), wanted.end(), [&](TetId t) { return seen[place(t)]; });
+}
+
+// Whether no tissue but one falls apart when it takes all tetrahedra of a star: each fan of the others can go.
+bool splits_no_pieces(const TetComplex& complex, std::span<const TetId> star, TissueId taker) {
+  std::vector<char> seen(star.size(), 0);
+  for (std::size_t first = 0; first < star.size(); ++first) {
+    const TissueId tissue = complex.tissue(star[first]);
+    if (seen[first] || tissue == 0 || tissue == taker) continue;
+    std::vector<TetId> fan = {star[first]};
+    seen[first] = 1;
+    for (std::size_t i = 0; i < fan.size(); ++i) {
+      for (const TetId other : complex.behind[fan[i]]) {
+        const auto at = static_cast<std::size_t>(std::lower_bound(star.begin(), star.end(), other) - star.begin());
+        if (at == star.size() || star[at] != other || seen[at] || complex.tissue(other) != tissue) continue;
+        seen[at] = 1;
+        fan.push_back(other);
+      }
+    }
+    if (!hangs_together_without(complex, fan, tissue, star)) return false;
+  }
+  return true;
+}
+
+// Relabels single tetrahedra, or all at a vertex, as long as that leaves fewer defects.
+class LabelMender {
+ public:
+  LabelMender(TetComplex& complex, Pieces& pieces, const RelabelPrice& price, double max_price)
+      : complex_(complex), pieces_(pieces), price_(price), max_price_(max_price) {}
+
+  // Takes the tetrahedron at v, and the tissue for it, that leave fewest defects; of equal ones the cheapest.
+  // Returns whether there was one.
+  bool mend_by_one(VertexId v, std::vector<TetId>& changed) {
+    best_ = {};
+    for (const TetId t : complex_.tets_of_vertex[v]) try_tet(t);
+    if (best_.gain == 0) return false;
+    relabel(best_.tet, best_.tissue);
+    changed.push_back(best_.tet);
+    return true;
+  }
+
+  // Takes the tissue that, given to all tetrahedra at v, leaves fewest defects. Returns whether there was one.
+  bool mend_by_star(VertexId v, std::vector<TetId>& changed) {
+    const auto star = complex_.tets_of_vertex[v];
+    std::vector<TissueId> own;
+    std::vector<VertexId> vertices;
+    for (const TetId t : star) {
+      own.push_back(complex_.tissue(t));
+      vertices.insert(vertices.end(), complex_.mesh.tets[t].begin(), complex_.mesh.tets[t].end());
+    }
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    std::vector<TissueId> tissues = own;
+    std::sort(tissues.begin(), tissues.end());
+    tissues.erase(std::unique(tissues.begin(), tissues.end()), tissues.end());
+    const unsigned before = defects_at(vertices);
+    Choice best;
+    for (const TissueId tissue : tissues) {
+      if (!joins_no_pieces(complex_, pieces_, star, tissue) || !splits_no_pieces(complex_, star, tissue)) continue;
+      double price = 0;
+      for (const TetId t : star) price += complex_.tissue(t) == tissue ? 0 : price_(t, tissue);
+      if (price > max_price_) continue;
+      for (const TetId t : star) complex_.mesh.tissues[t] = tissue;
+      const unsigned after = defects_at(vertices);
+      for (std::size_t i = 0; i < star.size(); ++i) complex_.mesh.tissues[star[i]] = own[i];
+      if (after < before && before - after > best.gain) best = {before - after, price, star[0], tissue};
+    }
+    if (best.gain == 0) return false;
+    std::uint32_t piece = Pieces::kNone;
+    for (const TetId t : star) {
+      if (best.tissue != 0 && complex_.tissue(t) == best.tissue) piece = pieces_.of_tet[t];
+    }
+    for (const TetId t : star) {
+      if (complex_.tissue(t) == best.tissue) continue;
+      if (complex_.tissue(t) != 0) --pieces_.list[pieces_.of_tet[t]].tets;
+      complex_.mesh.tissues[t] = best.tissue;
+      pieces_.of_tet[t] = piece;
+      if (piece != Pieces::kNone) ++pieces_.list[piece].tets;
+      changed.push_back(t);
+    }
+    return true;
+  }
+
+ private:
+  unsigned defects_at(const std::vector<VertexId>& vertices) const {
+    unsigned sum = 0;
+    for (const VertexId v : vertices) sum += star_defect(complex_, v);
+    return sum;
+  }
+
+  struct Choice {
+    unsigned gain = 0;  // defects fewer
+    double price = 0;
+    TetId tet = 0;
+    TissueId tissue = 0;
+  };
+
+  void try_tet(TetId t) {
+    const TissueId own = complex_.tissue(t);
+    std::array<TissueId, 4> tried;
+    std::size_t count = 0;
+    unsigned before = 0;
+    for (const TetId other : complex_.behind[t]) {
+      const TissueId tissue = complex_.tissue(other);
+      if (tissue == own || std::find(tried.begin(), tried.begin() + count, tissue) != tried.begin() + count) continue;
+      if (count == 0) before = defect_around(complex_, t);
+      tried[count++] = tissue;
+      complex_.mesh.tissues[t] = tissue;
+      const unsigned after = defect_around(complex_, t);
+      complex_.mesh.tissues[t] = own;
+      if (after >= before || before - after < best_.gain) continue;
+      const Choice choice = {before - after, price_(t, tissue), t, tissue};
+      if (choice.price > max_price_ || (choice.gain == best_.gain && choice.price >= best_.price)) continue;
+      if (keeps_pieces(t, tissue)) best_ = choice;
+    }
+  }
+
+  bool keeps_pieces(TetId t, TissueId tissue) const {
+    std::uint32_t joined = Pieces::kNone;
+    for (const TetId other : complex_.behind[t]) {
+      if (tissue == 0 || complex_.tissue(other) != tissue) continue;
+      if (joined != Pieces::kNone && pieces_.of_tet[other] != joined) return false;
+      joined = pieces_.of_tet[other];
+    }
+    if (complex_.tissue(t) == 0) return true;
+    return pieces_.list[pieces_.of_tet[t]].tets > 1 && neighbours_hang_together(complex_, t);
+  }
+
+  void relabel(TetId t, TissueId tissue) {
+    if (complex_.tissue(t) != 0) --pieces_.list[pieces_.of_tet[t]].tets;
+    complex_.mesh.tissues[t] = tissue;
+    pieces_.of_tet[t] = Pieces::kNone;
+    if (tissue == 0) return;
+    for (const TetId other : complex_.behind[t]) {
+      if (other != t && complex_.tissue(other) == tissue) pieces_.of_tet[t] = pieces_.of_tet[other];
+    }
+    ++pieces_.list[pieces_.of_tet[t]].tets;
+  }
+
+  TetComplex& complex_;
+  Pieces& pieces_;
+  const RelabelPrice& price_;
+  double max_price_;
+  Choice best_;
+};
+
+}  // namespace
+
+unsigned star_defect(const TetComplex& complex, VertexId v) { return Star(complex, v).defect(); }
+
+std::vector<VertexId> singular_among(const TetComplex& complex, std::vector<VertexId> vertices) {
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  std::vector<char> singular(vertices.size());
+  parallel_for(vertices.size(), [&](std::size_t i) { singular[i] = star_defect(complex, vertices[i]) > 0; });
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    if (singular[i]) vertices[kept++] = vertices[i];
+  }
+  vertices.resize(kept);
+  return vertices;
+}
+
+std::vector<VertexId> singular_vertices(const TetComplex& complex) {
+  std::vector<VertexId> all(complex.mesh.points_mm.size());
+  std::iota(all.begin(), all.end(), VertexId{0});
+  return singular_among(complex, std::move(all));
+}
+
+bool neighbours_hang_together(const TetComplex& complex, TetId t) {
+  const std::array<TetId, 1> alone = {t};
+  return hangs_together_without(complex, alone, complex.tissue(t), alone);
+}
+
+std::vector<VertexId> mend_single_tets(TetComplex& complex, Pieces& pieces, std::vector<VertexId> singular,
+                                       const RelabelPrice& price, double max_price, std::vector<TetId>& changed) {
+  LabelMender mender(complex, pieces, price, max_price);
+  // Every step leaves fewer defects in all, so this ends; but it may open a vertex that was sound.
+  for (bool progress = true; progress;) {
+    progress = false;
+    std::vector<VertexId> next = singular;
+    for (const VertexId v : singular) {
+      const std::size_t done = changed.size();
+      while (star_defect(complex, v) > 0 && mender.mend_by_one(v, changed)) {
+      }
+      if (star_defect(complex, v) > 0) mender.mend_by_star(v, changed);
+      progress = progress || changed.size() > done;
+      for (std::size_t i = done; i < changed.size(); ++i) {
+        const auto& tet = complex.mesh.tets[changed[i]];
+        next.insert(next.end(), tet.begin(), tet.end());
+      }
+    }
+    if (progress) singular = singular_among(complex, std::move(next));
+  }
+  return singular;
+}
+
+namespace {
+
+std::vector<std::vector<TetId>> group_neighbourhoods(const TetComplex& complex, std::span<const VertexId> vertices) {
+  std::vector<TetId> tets;
+  for (const VertexId v : vertices)
+    tets.insert(tets.end(), complex.tets_of_vertex[v].begin(), complex.tets_of_vertex[v].end());
+  std::sort(tets.begin(), tets.end());
+  tets.erase(std::unique(tets.begin(), tets.end()), tets.end());
+  const auto place = [&](TetId t) {
+    return static_cast<std::uint32_t>(std::lower_bound(tets.begin(), tets.end(), t) - tets.begin());
+  };
+  DisjointSets sets(tets.size());
+  for (const VertexId v : vertices) {
+    const auto star = complex.tets_of_vertex[v];
+    for (const TetId t : star) sets.join(place(star[0]), place(t));
+  }
+  std::vector<std::vector<TetId>> groups;
+  std::vector<std::uint32_t> group(tets.size());
+  for (std::uint32_t i = 0; i < tets.size(); ++i) {
+    if (sets.is_root(i)) {
+      group[i] = static_cast<std::uint32_t>(groups.size());
+      groups.emplace_back();
+    } else {
+      group[i] = group[sets.root(i)];
+    }
+    groups[group[i]].push_back(tets[i]);
+  }
+  return groups;
+}
+
+TissueId choose_tissue(const TetComplex& complex, const Pieces& pieces, const std::vector<TetId>& group,
+                       std::span<const float> sizes) {
+  std::map<TissueId, double> volume;
+  for (const TetId t : group) volume[complex.tissue(t)] += static_cast<double>(sizes[t]);
+  std::vector<std::pair<double, TissueId>> order;
+  for (const auto& [tissue, v] : volume) order.emplace_back(-v, tissue);
+  std::sort(order.begin(), order.end());
+  for (const auto& [v, tissue] : order) {
+    if (joins_no_pieces(complex, pieces, group, tissue)) return tissue;
+  }
+  return order.front().second;
+}
+
+}  // namespace
+
+void mend_neighbourhoods(TetComplex& complex, Pieces& pieces, std::span<const VertexId> vertices,
+                         std::span<const float> sizes, std::size_t max_tets, std::vector<TetId>& changed) {
+  for (const std::vector<TetId>& group : group_neighbourhoods(complex, vertices)) {
+    if (group.size() > max_tets) continue;
+    const TissueId tissue = choose_tissue(complex, pieces, group, sizes);
+    for (const TetId t : group) {
+      if (complex.tissue(t) == tissue) continue;
+      complex.mesh.tissues[t] = tissue;
+      changed.push_back(t);
+    }
+  }
+  pieces = find_pieces(complex);
+}
+
+}  // namespace anatomesh

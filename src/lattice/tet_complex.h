@@ -1,0 +1,40 @@
+// The whole lattice as one conforming mesh, background included, with what touches what: where labels are mended.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "mesh/adjacency.h"
+#include "mesh/tissue_mesh.h"
+
+namespace anatomesh {
+
+/// Stays true while labels change.
+struct TetComplex {
+  TissueMesh mesh;
+  VertexLists<TetId> tets_of_vertex;
+  /// behind[t][n]: the tetrahedron behind the face of t opposite to its corner n, or t itself at the mesh's border.
+  std::vector<std::array<TetId, 4>> behind;
+
+  TissueId tissue(TetId t) const { return mesh.tissues[t]; }
+};
+
+/// Cost: linear, about 0.5 us a tetrahedron.
+TetComplex make_complex(TissueMesh mesh);
+
+/// Pieces of the tissues: tetrahedra of one tissue, each reached from each other through faces.
+struct Pieces {
+  static constexpr std::uint32_t kNone = ~0u;
+  struct Piece {
+    TissueId tissue = 0;
+    std::uint32_t tets = 0;
+    TetId first = 0;  ///< the lowest of them
+  };
+  std::vector<std::uint32_t> of_tet;  ///< by tetrahedron, kNone for background
+  std::vector<Piece> list;            ///< in the order of their first tetrahedra
+};
+Pieces find_pieces(const TetComplex& complex);
+
+}  // namespace anatomesh
