@@ -272,6 +272,7 @@ std::vector<TetRef> LabelLattice::Impl::leaves_to_mend(const FidelityGap& gap) c
       --open[t];
       wanted = true;
     }
+    if (marked.size() == gap.max_leaves) break;
     if (wanted) marked.push_back(leaves_.list()[i].tet);
   }
   return marked;

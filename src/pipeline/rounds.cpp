@@ -5,24 +5,44 @@
 #include <optional>
 #include <utility>
 
+#include "anatomesh/errors.h"
+
 #include "deform/deform.h"
-#include "pipeline/final_fidelity.h"
 
 namespace anatomesh {
 namespace {
 
 // A lattice that has this share of F is the first to be deformed: that costs little, and shows where it must be finer.
 constexpr double kFirstShare = 0.75;
-// Each round mends most of what is wrong. What is left after these is not to be had.
-constexpr int kMaxRounds = 16;
+// A round that leaves more than this share of what was lacking is the last: what is left is not to be had.
+constexpr double kWorthwhile = 0.9;
+constexpr int kMaxRounds = 12;
+// Times that a mesh may lose its fidelity to the last steps of its deformation; more is asked for then.
+constexpr int kMaxRetries = 2;
+constexpr double kReserve = 0.002;
+// Of the tetrahedra of a lattice about this share is left when the mesh is finished.
+constexpr double kShareLeft = 0.5;
+constexpr double kTetsPerLeaf = 10;  // that its refinement adds, with what must follow
 // Of the progress.
 constexpr double kLatticeShare = 0.2;
 
-bool holds(const std::vector<Fidelity>& reached, const std::vector<double>& wanted) {
-  for (std::size_t t = 1; t < reached.size(); ++t) {
-    if (reached[t].f1() < wanted[t] || reached[t].f2() < wanted[t]) return false;
-  }
-  return true;
+double reached_of(const Fidelity& f) { return std::min(f.f1(), f.f2()); }
+
+// Sum over the tissues of what they lack.
+double lacking(const std::vector<Fidelity>& reached, const std::vector<double>& wanted) {
+  double sum = 0;
+  for (std::size_t t = 1; t < reached.size(); ++t) sum += std::max(0.0, wanted[t] - reached_of(reached[t]));
+  return sum;
+}
+
+double mean_reached(const std::vector<Fidelity>& reached) {
+  double sum = 0;
+  for (std::size_t t = 1; t < reached.size(); ++t) sum += reached_of(reached[t]);
+  return sum / static_cast<double>(reached.size() - 1);
+}
+
+std::size_t tissue_tets(const TissueMesh& mesh) {
+  return mesh.tissues.size() - static_cast<std::size_t>(std::ranges::count(mesh.tissues, TissueId{0}));
 }
 
 class Rounds {
@@ -30,64 +50,157 @@ class Rounds {
   Rounds(const TissueImage& image, const LatticePlan& plan, const Options& options, const Stage& stage,
          const std::function<void(std::string)>& stage_done)
       : image_(image),
+        options_(options.lattice),
         wanted_(plan.fidelity),
-        first_plan_(plan),
+        aim_(plan.fidelity),
+        first_plan_(first_plan(plan, options.lattice)),
         stage_(stage),
         stage_done_(stage_done),
-        deformer_(image, options.deform, stage) {}
-
-  DeformedMesh run(FidelityStage judged) {
-    if (judged == FidelityStage::final) {
-      for (double& f : first_plan_.fidelity) f *= kFirstShare;
-    }
-    LabelLattice builder(image_, first_plan_);
-    LabelledLattice lattice = builder.build(stage_.part("lattice", 0, kLatticeShare));
-    stage_done_("lattice");
-    for (int round = 0;; ++round) {
-      const Stage stage = part(round);
-      const bool may_refine = judged == FidelityStage::final && round < kMaxRounds;
-      TissueMesh mesh = std::move(lattice.mesh);
-      MeshFidelity reached;
-      std::optional<LabelledLattice> finer;
-      for (const bool finished : {false, true}) {
-        if (finished) {
-          deformer_.finish(mesh, {}, stage.part("deform", 0.5, 1));
-        } else {
-          deformer_.approach(mesh, stage.part("deform", 0, 0.5));
-        }
-        reached = measure_fidelity(mesh, image_, stage);
-        stage_done_("deform");
-        if (may_refine && !holds(reached.tissues, wanted_)) {
-          finer = builder.refine(find_gap(reached, image_, wanted_), stage);
-          stage_done_("lattice");
-        }
-        if (finer) break;
-      }
-      if (!finer) return {std::move(mesh), std::move(lattice.fidelity), std::move(reached.tissues)};
-      lattice = std::move(*finer);
-    }
+        builder_(image, first_plan_),
+        deformer_(image, options.deform, stage) {
+    improvement_.gradation = options.deform.gradation > 0 ? options.deform.gradation : improvement_.gradation;
   }
+
+  DeformedMesh run();
 
  private:
-  // The rounds share the progress bar; how many there will be is not known.
-  Stage part(int round) const {
-    const auto begin = [](int r) { return kLatticeShare + (1 - kLatticeShare) * (1 - std::pow(0.75, r)); };
-    return stage_.part("deform", begin(round), begin(round + 1));
+  static LatticePlan first_plan(LatticePlan plan, const LatticeOptions& options) {
+    if (options.fidelity_stage == FidelityStage::final) {
+      for (double& f : plan.fidelity) f *= kFirstShare;
+    }
+    return plan;
   }
+  bool may_refine() const { return options_.fidelity_stage == FidelityStage::final && round_ < kMaxRounds; }
+  Stage part() const;
+  MeshFidelity approach(TissueMesh& mesh) const;
+  DeformedMesh finish(TissueMesh mesh, std::size_t target) const;
+  bool is_stalled(const MeshFidelity& reached);
+  bool exceeds_budget(const TissueMesh& mesh);
+  DeformedMesh within_budget(TissueMesh mesh);
+  std::optional<LabelledLattice> refine(MeshFidelity& reached);
+  bool must_retry(const DeformedMesh& finished);
 
   const TissueImage& image_;
-  std::vector<double> wanted_;
+  const LatticeOptions& options_;
+  std::vector<double> wanted_;  // F by tissue
+  std::vector<double> aim_;     // what the deformed lattice must have for it
   LatticePlan first_plan_;
   Stage stage_;
   const std::function<void(std::string)>& stage_done_;
+  LabelLattice builder_;
   Deformer deformer_;
+  ImproveOptions improvement_;
+  LabelledLattice lattice_;
+  std::optional<DeformedMesh> best_;  // inside the budget
+  std::size_t tets_ = 0;              // of the last mesh, as they will be when it is finished
+  double lacked_ = 1e9;
+  int round_ = 0, retries_ = 0;
 };
+
+// The rounds share the progress bar; how many there will be is not known.
+Stage Rounds::part() const {
+  const auto begin = [](int r) { return kLatticeShare + (1 - kLatticeShare) * (1 - std::pow(0.75, r)); };
+  return stage_.part("deform", begin(round_), begin(round_ + 1));
+}
+
+MeshFidelity Rounds::approach(TissueMesh& mesh) const {
+  const Stage stage = part().part("deform", 0, 0.5);
+  deformer_.approach(mesh, stage);
+  MeshFidelity reached = measure_fidelity(mesh, image_, stage);
+  stage_done_("deform");
+  return reached;
+}
+
+DeformedMesh Rounds::finish(TissueMesh mesh, std::size_t target) const {
+  const Stage stage = part().part("deform", 0.5, 1);
+  ImproveOptions improvement = improvement_;
+  improvement.target_tets = target;
+  deformer_.finish(mesh, improvement, stage);
+  MeshFidelity reached = measure_fidelity(mesh, image_, stage);
+  stage_done_("improve");
+  return {std::move(mesh), lattice_.fidelity, std::move(reached)};
+}
+
+bool Rounds::is_stalled(const MeshFidelity& reached) {
+  const double lacks = lacking(reached.tissues, aim_);
+  const bool stalled = lacks > kWorthwhile * lacked_;
+  lacked_ = lacks;
+  return stalled;
+}
+
+std::optional<LabelledLattice> Rounds::refine(MeshFidelity& reached) {
+  if (!may_refine() || lacking(reached.tissues, aim_) == 0) return std::nullopt;
+  FidelityGap gap = find_gap(reached, image_, aim_);
+  if (options_.max_elements > 0) {
+    const double room = static_cast<double>(options_.max_elements) - static_cast<double>(tets_);
+    gap.max_leaves = static_cast<std::size_t>(std::max(16.0, room / kShareLeft / kTetsPerLeaf));
+  }
+  ++round_;
+  std::optional<LabelledLattice> finer = builder_.refine(gap, part());
+  stage_done_("lattice");
+  return finer;
+}
+
+// What the last steps took from a tissue is asked for on top.
+bool Rounds::must_retry(const DeformedMesh& finished) {
+  if (!may_refine() || retries_ == kMaxRetries || lacking(finished.final.tissues, wanted_) == 0) return false;
+  ++retries_;
+  for (std::size_t t = 1; t < aim_.size(); ++t) {
+    const double lacks = wanted_[t] - reached_of(finished.final.tissues[t]);
+    if (lacks > 0) aim_[t] = std::min(1.0, aim_[t] + lacks + kReserve);
+  }
+  lacked_ = 1e9;
+  return true;
+}
+
+// Whether the mesh would have too many tetrahedra; one that has not, but nearly, is kept.
+bool Rounds::exceeds_budget(const TissueMesh& mesh) {
+  const std::size_t tets = tissue_tets(mesh);
+  tets_ = static_cast<std::size_t>(kShareLeft * static_cast<double>(tets));
+  if (options_.max_elements == 0 || tets <= options_.max_elements) return false;
+  DeformedMesh finished = finish(mesh, 0);
+  tets_ = tissue_tets(finished.mesh);
+  if (tets_ > options_.max_elements) return true;
+  best_ = std::move(finished);
+  return false;
+}
+
+// Of a mesh with its elements thinned out, and the last that had few enough by itself, the more faithful one.
+DeformedMesh Rounds::within_budget(TissueMesh mesh) {
+  DeformedMesh thinned = finish(std::move(mesh), options_.max_elements);
+  const std::size_t tets = tissue_tets(thinned.mesh);
+  const bool fits = tets <= options_.max_elements;
+  if (best_ && (!fits || mean_reached(best_->final.tissues) > mean_reached(thinned.final.tissues)))
+    return std::move(*best_);
+  if (fits) return thinned;
+  throw MeshingFailed("max_elements is " + std::to_string(options_.max_elements) + ", but this image takes about " +
+                      std::to_string(tets) + " tetrahedra at least with this bcc_size");
+}
+
+DeformedMesh Rounds::run() {
+  lattice_ = builder_.build(stage_.part("lattice", 0, kLatticeShare));
+  stage_done_("lattice");
+  for (;;) {
+    TissueMesh mesh = lattice_.mesh;
+    MeshFidelity reached = approach(mesh);
+    if (exceeds_budget(mesh)) return within_budget(std::move(mesh));
+    std::optional<LabelledLattice> finer;
+    const bool stalled = is_stalled(reached);
+    if (!stalled) finer = refine(reached);
+    if (!finer) {
+      DeformedMesh finished = finish(std::move(mesh), 0);
+      if (!stalled && must_retry(finished)) finer = refine(finished.final);
+      if (!finer) return finished;
+    }
+    lattice_ = std::move(*finer);
+  }
+}
 
 }  // namespace
 
 DeformedMesh refine_and_deform(const TissueImage& image, const LatticePlan& plan, const Options& options,
                                const Stage& stage, const std::function<void(std::string)>& stage_done) {
-  return Rounds(image, plan, options, stage, stage_done).run(options.lattice.fidelity_stage);
+  return Rounds(image, plan, options, stage, stage_done).run();
 }
 
 }  // namespace anatomesh

@@ -9,6 +9,7 @@
 #include "base/stage.h"
 #include "image/tissue_image.h"
 #include "lattice/label_lattice.h"
+#include "pipeline/final_fidelity.h"
 
 namespace anatomesh {
 
@@ -16,7 +17,7 @@ namespace anatomesh {
 struct DeformedMesh {
   TissueMesh mesh;                ///< with its cushion
   std::vector<Fidelity> lattice;  ///< of the lattice it was deformed from
-  std::vector<Fidelity> final;    ///< of the mesh itself
+  MeshFidelity final;             ///< of the mesh itself
 };
 
 /// Refines the lattice and deforms it. With a fidelity judged on the final mesh: refines it again where the deformed
