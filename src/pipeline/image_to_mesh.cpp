@@ -4,12 +4,16 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <map>
 #include <string>
+#include <utility>
 
 #include "base/parallel.h"
 #include "base/rotation.h"
 #include "base/stage.h"
 #include "base/vec.h"
+#include "image/components.h"
+#include "image/local_thickness.h"
 #include "image/tissue_image.h"
 #include "lattice/label_lattice.h"
 #include "mesh/tet_shape.h"
@@ -50,6 +54,7 @@ LatticePlan make_plan(const TissueImage& image, const LatticeOptions& options) {
   const double thinnest = std::min({image.spacing_mm.x, image.spacing_mm.y, image.spacing_mm.z});
   const double smallest = std::ldexp(options.bcc_size_mm, -plan.levels);
   plan.extra_levels = static_cast<int>(std::clamp(std::ceil(std::log2(4 * smallest / thinnest)), 0.0, 8.0));
+  plan.allow_non_manifold = options.allow_non_manifold;
   plan.fidelity.assign(image.labels.size(), options.fidelity);
   for (const auto& [label, fidelity] : options.fidelity_label) {
     const auto at = std::lower_bound(image.labels.begin(), image.labels.end(), label);
@@ -116,14 +121,26 @@ std::string with_voxels(Label label, std::uint64_t voxels) {
   return "label " + std::to_string(label) + " (" + std::to_string(voxels) + (voxels == 1 ? " voxel)" : " voxels)");
 }
 
-std::vector<std::string> describe_losses(const std::vector<TissueOutcome>& tissues) {
-  std::vector<std::string> warnings;
+void describe_losses(const std::vector<TissueOutcome>& tissues, std::vector<std::string>& warnings) {
   for (const TissueOutcome& tissue : tissues) {
     if (tissue.tets > 0) continue;
     warnings.push_back(with_voxels(tissue.label, tissue.voxels) +
                        " is too small to be represented and is not in the mesh; a smaller bcc_size may help");
   }
-  return warnings;
+}
+
+void describe_islands(const std::vector<DroppedIsland>& islands, const TissueImage& image,
+                      std::vector<std::string>& warnings) {
+  std::map<Label, std::pair<std::uint64_t, std::uint64_t>> dropped;  // parts and their voxels
+  for (const DroppedIsland& island : islands) {
+    auto& [parts, voxels] = dropped[image.labels[island.tissue]];
+    ++parts;
+    voxels += island.voxels;
+  }
+  for (const auto& [label, sum] : dropped) {
+    warnings.push_back(std::to_string(sum.first) + (sum.first == 1 ? " island of " : " islands of ") +
+                       with_voxels(label, sum.second) + " dropped, as drop_islands asks");
+  }
 }
 
 // A tissue thinner than the lattice can lose most of its volume to the deformation: that must not pass unnoticed.
@@ -156,9 +173,10 @@ Result image_to_mesh(const LabelImage& image, const Options& options, const Prog
   Stopwatch watch(result.times);
 
   const Stage reading(progress, "labels", 0.0, 0.05);
-  const TissueImage tissues = make_tissue_image(image, options.labels);
+  TissueImage tissues = make_tissue_image(image, options.labels);
   check_labels_exist(result.options, tissues);
   check_memory(result.options, image, tissues);
+  describe_islands(drop_islands(tissues, options.lattice.drop_islands), tissues, result.warnings);
   watch.stage_done("labels");
 
   const LatticePlan plan = make_plan(tissues, result.options.lattice);
@@ -167,7 +185,7 @@ Result image_to_mesh(const LabelImage& image, const Options& options, const Prog
 
   const Stage finishing(progress, "finish", 0.95, 1.0);
   result.tissues = describe_tissues(tissues, plan, deformed);
-  result.warnings = describe_losses(result.tissues);
+  describe_losses(result.tissues, result.warnings);
   describe_shrinkage(deformed.mesh, tissues, result.warnings);
   result.mesh = finish(deformed.mesh, tissues, ToPhysical(image, options.frame));
   if (result.mesh.tets.empty()) throw MeshingFailed("no tissue could be represented; take a smaller bcc_size");
