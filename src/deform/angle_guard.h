@@ -28,8 +28,8 @@ class AngleGuard {
   double advance(VertexId v, Vec3 p, int halvings) const;
 
   /// Moves v towards the goal, and where that is stopped on to the best place around that the bounds allow: the one
-  /// with the least (x - goal)^T metric (x - goal), found in steps of `reach` (mm) and fractions of it. Returns 1 when v is
-  /// at the goal, 0 when it stays, else 0.5. Neighbours of v must not move at the same time.
+  /// with the least (x - goal)^T metric (x - goal), found in steps of `reach` (mm) and fractions of it. Returns 1 when
+  /// v is at the goal, 0 when it stays, else 0.5. Neighbours of v must not move at the same time.
   double advance_best(VertexId v, Vec3 goal, const Mat3& metric, double reach) const;
 
   /// Moves v to a place around it where the worst of its tetrahedra is farther from the bounds (see slack()), in steps
