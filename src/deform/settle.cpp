@@ -124,7 +124,7 @@ class Settling {
     double edge = 0;
     for (const VertexId w : topology_.neighbours[v]) edge += norm(mesh_.points_mm[w] - from);
     edge /= static_cast<double>(topology_.neighbours[v].size());
-    guard_.advance_best(v, goal, quadric.matrix, 0.2 * edge);
+    guard_.advance_best(v, goal, quadric.matrix, edge / 5);
   }
 
  private:
