@@ -120,11 +120,12 @@ class Settling {
     quadric.add(relaxation(v), kOfSpacing);
     const Vec3 from = mesh_.points_mm[v];
     Vec3 goal = from + limited(quadric.minimiser());
-    add_border(v, goal, quadric);
+    const bool at_border = add_border(v, goal, quadric);
     double edge = 0;
     for (const VertexId w : topology_.neighbours[v]) edge += norm(mesh_.points_mm[w] - from);
     edge /= static_cast<double>(topology_.neighbours[v].size());
     guard_.advance_best(v, goal, quadric.matrix, edge / 5);
+    if (at_border && mesh_.points_mm[v] != goal) guard_.advance(v, on_border(v, mesh_.points_mm[v]), 0);
   }
 
  private:
@@ -240,13 +241,23 @@ class Settling {
     return voxels > 1 ? (1 / voxels) * step : step;
   }
 
-  void add_border(VertexId v, Vec3& goal, Quadric& quadric) const {
+  Vec3 on_border(VertexId v, Vec3 p) const {
     for (const std::uint32_t f : interfaces_.of_vertex[v]) {
       const auto& border = interfaces_.faces[f].border;
-      if (!border) continue;
-      goal[border->axis] = border->position_mm;
-      quadric.matrix[border->axis][border->axis] += kOfBorder;
+      if (border) p[border->axis] = border->position_mm;
     }
+    return p;
+  }
+
+  bool add_border(VertexId v, Vec3& goal, Quadric& quadric) const {
+    goal = on_border(v, goal);
+    std::array<bool, 3> held = {};
+    for (const std::uint32_t f : interfaces_.of_vertex[v]) {
+      const auto& border = interfaces_.faces[f].border;
+      if (border) held[border->axis] = true;
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) quadric.matrix[axis][axis] += held[axis] ? kOfBorder : 0;
+    return held[0] || held[1] || held[2];
   }
 
   TissueMesh& mesh_;
