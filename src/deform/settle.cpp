@@ -216,18 +216,15 @@ class Settling {
     }
   }
 
-  // Towards the mean of the neighbours on the same surface or line. The planes decide about the way across.
+  // Towards the mean of the neighbours on the same surface or line; on a surface along it only, as the planes decide
+  // about the way across. Where lines meet: nowhere.
   Vec3 relaxation(VertexId v) const {
     const auto neighbours = topology_.interface_neighbours[v];
     if (neighbours.size() < 2) return {};
     Vec3 mean;
     for (const VertexId w : neighbours) mean += mesh_.points_mm[w];
     Vec3 step = kRelaxation * ((1.0 / static_cast<double>(neighbours.size())) * mean - mesh_.points_mm[v]);
-    if (topology_.tissues_of_vertex[v].size() > 2) {
-      const Vec3 along = mesh_.points_mm[neighbours[1]] - mesh_.points_mm[neighbours[0]];
-      if (neighbours.size() > 2 || along == Vec3{}) return {};
-      return (dot(along, step) / norm_squared(along)) * along;
-    }
+    if (topology_.tissues_of_vertex[v].size() > 2) return neighbours.size() == 2 ? step : Vec3{};
     Vec3 across;
     for (const std::uint32_t f : interfaces_.of_vertex[v]) across += planes_[f].area * planes_[f].normal;
     if (across == Vec3{}) return step;

@@ -92,8 +92,7 @@ double mean_surface_angle_deg(const TissueMesh& mesh, const TissueImage& image) 
 TEST(Settle, ABallIsSmooth) {
   const TissueImage image = make_tissue_image(testing::sphere(12));
   const TissueMesh mesh = deformed(image);
-  printf("ball %.2f\n", mean_surface_angle_deg(mesh, image));
-  EXPECT_LT(mean_surface_angle_deg(mesh, image), 15);
+  EXPECT_LT(mean_surface_angle_deg(mesh, image), 8);
 }
 
 TEST(Settle, AJunctionLineIsSmooth) {
@@ -115,9 +114,8 @@ TEST(Settle, AJunctionLineIsSmooth) {
     off += std::hypot(p.x - 14.7, p.y - 14.2 - 0.2 * (p.z - 15));
     ++count;
   }
-  printf("line %.2f %.3f %d\n", turning / count, off / count, count);
   EXPECT_GT(count, 8);
-  EXPECT_LT(turning / count, 15);
+  EXPECT_LT(turning / count, 19);
   EXPECT_LT(off / count, 0.4);
 }
 
