@@ -16,7 +16,10 @@ constexpr double kRoom = 0.15;
 constexpr double kRoomReach = 0.15;  // of an edge
 constexpr int kRoomRounds = 6;
 
-// How long a vertex that was stopped looks for a better place around it.
+// An interface vertex looks for the place around it where it is nearest to its goal, with some slack to spare, so that
+// its neighbours find theirs.
+constexpr double kSpare = 0.05;
+constexpr double kReachOfEdge = 5;  // an edge is this many first steps long
 constexpr int kSearchRounds = 4;
 
 constexpr double kDiagonal = 0.6;
@@ -67,26 +70,30 @@ double AngleGuard::advance(VertexId v, Vec3 p, int halvings) const {
 
 double AngleGuard::advance_best(VertexId v, Vec3 goal, const Mat3& metric, double reach) const {
   const double share = advance(v, goal, 3);
-  if (share == 1) return 1;
-  const auto cost = [&](Vec3 at) { return dot(at - goal, metric * (at - goal)); };
+  const double scale = 1 / (kReachOfEdge * kReachOfEdge * reach * reach);
+  const auto of_way = [&](Vec3 at) { return scale * dot(at - goal, metric * (at - goal)); };
+  const auto of_slack = [](double slack) { return slack < kSpare ? (kSpare - slack) * (kSpare - slack) : 0; };
   Vec3& best = mesh_.points_mm[v];
-  double least = cost(best);
+  double least = of_way(best) + of_slack(slack(v, best, -1));
+  if (share == 1 && least == 0) return 1;
   double radius = reach;
-  bool any = share > 0;
   for (int round = 0; round < kSearchRounds; ++round) {
     const Vec3 centre = best;
     bool moved = false;
     for (const Vec3 direction : kAllDirections) {
       const Vec3 at = centre + radius * direction;
-      const double c = cost(at);
-      if (c >= least || !fits(v, at)) continue;
+      const double way = of_way(at);
+      if (way >= least) continue;
+      const double needed = std::max(0.0, kSpare - std::sqrt(least - way));
+      const double s = slack(v, at, needed);
+      if (s < needed || way + of_slack(s) >= least) continue;
       best = at;
-      least = c;
-      moved = any = true;
+      least = way + of_slack(s);
+      moved = true;
     }
     if (!moved) radius *= 0.5;
   }
-  return any ? 0.5 : 0;
+  return share;
 }
 
 double AngleGuard::slack(VertexId v, Vec3 p, double enough) const {

@@ -27,9 +27,10 @@ class AngleGuard {
   /// the share gone, 0 if none. Neighbours of v must not move at the same time.
   double advance(VertexId v, Vec3 p, int halvings) const;
 
-  /// Moves v towards the goal, and where that is stopped on to the best place around that the bounds allow: the one
-  /// with the least (x - goal)^T metric (x - goal), found in steps of `reach` (mm) and fractions of it. Returns 1 when
-  /// v is at the goal, 0 when it stays, else 0.5. Neighbours of v must not move at the same time.
+  /// Moves v towards the goal like advance() and then, where it was stopped or one of its tetrahedra came near its
+  /// bounds, to the best place around: the least (x - goal)^T metric (x - goal), in units of an edge, and slack. Found
+  /// in steps of `reach` (mm; a fifth of an edge) and fractions of it; the metric's larger eigenvalues are about 1.
+  /// Returns what advance() does. Neighbours of v must not move at the same time.
   double advance_best(VertexId v, Vec3 goal, const Mat3& metric, double reach) const;
 
   /// Moves v to a place around it where the worst of its tetrahedra is farther from the bounds (see slack()), in steps

@@ -19,6 +19,14 @@ constexpr double kMatchWeight = 1.0;
 constexpr double kTolerance = 1e-2;
 constexpr int kMaxSolverIterations = 200;
 constexpr int kGuardSweeps = 2;
+// When an iteration moves the interfaces by less than this on average, settling does the rest.
+constexpr double kNear = 0.2;  // of a voxel
+
+double mean_move(std::span<const Vec3> before, const TissueMesh& mesh, std::span<const VertexId> vertices) {
+  double sum = 0;
+  for (const VertexId v : vertices) sum += norm(mesh.points_mm[v] - before[v]);
+  return vertices.empty() ? 0 : sum / static_cast<double>(vertices.size());
+}
 
 double mean_edge(const TissueMesh& mesh, const MeshTopology& topology, VertexId v) {
   double sum = 0;
@@ -61,7 +69,9 @@ void register_mesh(TissueMesh& mesh, const MeshTopology& topology, const AngleGu
     sources.push_back({{}, topology.tissues_of_vertex[v], mean_edge(mesh, topology, v)});
   BlockMatrix stiffness{make_pattern(part.vertices, part.tets), {}};
   std::vector<double> weight(part.vertices);
-  std::vector<Vec3> wanted(part.vertices), u(part.vertices), goals(mesh.points_mm.size());
+  std::vector<Vec3> wanted(part.vertices), u(part.vertices), goals(mesh.points_mm.size()), before;
+  const Vec3 spacing = field.image().spacing_mm;
+  const double near_mm = kNear * (spacing.x + spacing.y + spacing.z) / 3;
   for (int iteration = 0; iteration < iterations; ++iteration) {
     assemble_stiffness(stiffness, std::span(mesh.points_mm).first(part.vertices), part.tets, part.tissues, materials);
     for (std::size_t s = 0; s < vertices.size(); ++s) sources[s].position_mm = mesh.points_mm[vertices[s]];
@@ -77,11 +87,14 @@ void register_mesh(TissueMesh& mesh, const MeshTopology& topology, const AngleGu
     const SolverOptions solver{kTolerance, kMaxSolverIterations, {}, stage.cancel_token()};
     solve_regularized(stiffness, weight, wanted, u, solver);
     stage.check_cancelled();
+    before = mesh.points_mm;
     goals = mesh.points_mm;
     for (std::size_t v = 0; v < part.vertices; ++v) goals[v] += u[v];
     advance_all(mesh, topology, guard, goals, kGuardSweeps, stage);
     relax_interior(mesh, topology, guard, stage);
     stage.at(static_cast<double>(iteration + 1) / iterations);
+    const double moved = mean_move(before, mesh, vertices);
+    if (moved < near_mm) break;
   }
 }
 

@@ -120,11 +120,12 @@ class Settling {
     quadric.add(relaxation(v), kOfSpacing);
     const Vec3 from = mesh_.points_mm[v];
     Vec3 goal = from + limited(quadric.minimiser());
-    add_border(v, goal, quadric);
+    const bool at_border = add_border(v, goal, quadric);
     double edge = 0;
     for (const VertexId w : topology_.neighbours[v]) edge += norm(mesh_.points_mm[w] - from);
     edge /= static_cast<double>(topology_.neighbours[v].size());
-    guard_.advance_best(v, goal, quadric.matrix, 0.2 * edge);
+    guard_.advance_best(v, goal, quadric.matrix, edge / 5);
+    if (at_border && mesh_.points_mm[v] != goal) guard_.advance(v, on_border(v, mesh_.points_mm[v]), 0);
   }
 
  private:
@@ -215,18 +216,15 @@ class Settling {
     }
   }
 
-  // Towards the mean of the neighbours on the same surface or line. The planes decide about the way across.
+  // Towards the mean of the neighbours on the same surface or line; on a surface along it only, as the planes decide
+  // about the way across. Where lines meet: nowhere.
   Vec3 relaxation(VertexId v) const {
     const auto neighbours = topology_.interface_neighbours[v];
     if (neighbours.size() < 2) return {};
     Vec3 mean;
     for (const VertexId w : neighbours) mean += mesh_.points_mm[w];
     Vec3 step = kRelaxation * ((1.0 / static_cast<double>(neighbours.size())) * mean - mesh_.points_mm[v]);
-    if (topology_.tissues_of_vertex[v].size() > 2) {
-      const Vec3 along = mesh_.points_mm[neighbours[1]] - mesh_.points_mm[neighbours[0]];
-      if (neighbours.size() > 2 || along == Vec3{}) return {};
-      return (dot(along, step) / norm_squared(along)) * along;
-    }
+    if (topology_.tissues_of_vertex[v].size() > 2) return neighbours.size() == 2 ? step : Vec3{};
     Vec3 across;
     for (const std::uint32_t f : interfaces_.of_vertex[v]) across += planes_[f].area * planes_[f].normal;
     if (across == Vec3{}) return step;
@@ -240,13 +238,23 @@ class Settling {
     return voxels > 1 ? (1 / voxels) * step : step;
   }
 
-  void add_border(VertexId v, Vec3& goal, Quadric& quadric) const {
+  Vec3 on_border(VertexId v, Vec3 p) const {
     for (const std::uint32_t f : interfaces_.of_vertex[v]) {
       const auto& border = interfaces_.faces[f].border;
-      if (!border) continue;
-      goal[border->axis] = border->position_mm;
-      quadric.matrix[border->axis][border->axis] += kOfBorder;
+      if (border) p[border->axis] = border->position_mm;
     }
+    return p;
+  }
+
+  bool add_border(VertexId v, Vec3& goal, Quadric& quadric) const {
+    goal = on_border(v, goal);
+    std::array<bool, 3> held = {};
+    for (const std::uint32_t f : interfaces_.of_vertex[v]) {
+      const auto& border = interfaces_.faces[f].border;
+      if (border) held[border->axis] = true;
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) quadric.matrix[axis][axis] += held[axis] ? kOfBorder : 0;
+    return held[0] || held[1] || held[2];
   }
 
   TissueMesh& mesh_;

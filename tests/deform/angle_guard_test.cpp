@@ -154,6 +154,41 @@ TEST(AdvanceAll, KeepsTheBoundsOnAnyNumberOfThreads) {
   EXPECT_EQ(results[0], results[1]);
 }
 
+TEST(AngleGuard, AdvanceBestEndsNoFartherFromItsGoalAndKeepsTheBounds) {
+  Guarded g(testing::four_label_point());
+  RandomMoves moves(g.mesh, 7);
+  const Mat3 identity = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  int nearer = 0;
+  for (int n = 0; n < 3000; ++n) {
+    const VertexId v = moves.vertex();
+    const Vec3 from = g.mesh.points_mm[v], goal = moves.goal(v, 3);
+    g.guard.advance(v, goal, 3);
+    const double plain = norm(g.mesh.points_mm[v] - goal);
+    g.mesh.points_mm[v] = from;
+    g.guard.advance_best(v, goal, identity, 0.4);
+    nearer += norm(g.mesh.points_mm[v] - goal) < 0.9 * plain;
+  }
+  EXPECT_GT(nearer, 500);
+  expect_bounds(g.mesh);
+}
+
+TEST(AngleGuard, MakeRoomIncreasesTheSlack) {
+  Guarded g(testing::four_label_point());
+  RandomMoves moves(g.mesh, 8);
+  int more = 0;
+  for (int n = 0; n < 2000; ++n) {
+    const VertexId v = moves.vertex();
+    g.guard.advance(v, moves.goal(v, 2), 3);
+    const double before = g.guard.slack(v, g.mesh.points_mm[v], -1);
+    g.guard.make_room(v, 0.2, 0.4);
+    const double after = g.guard.slack(v, g.mesh.points_mm[v], -1);
+    EXPECT_GE(after, before);
+    more += after > before;
+  }
+  EXPECT_GT(more, 200);
+  expect_bounds(g.mesh);
+}
+
 TEST(RelaxInterior, MovesInnerVerticesOnlyAndKeepsTheBounds) {
   Guarded g(testing::four_label_point());
   RandomMoves moves(g.mesh, 6);

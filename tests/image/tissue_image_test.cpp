@@ -141,5 +141,19 @@ TEST(TissueImage, DoesNotDependOnTheNumberOfThreads) {
   EXPECT_EQ(one.counts, four.counts);
 }
 
+TEST(TissueImage, KnowsWhereTheImageEnds) {
+  // Labelled voxels touch the image's border along j only.
+  LabelImage image = testing::make_image(
+      {20, 9, 14}, [](int i, int, int k) { return static_cast<Label>(i > 6 && i < 10 && k == 7 ? 1 : 0); });
+  image.spacing_mm = {2, 3, 0.5};
+  const TissueImage tissues = make_tissue_image(image);
+  EXPECT_EQ(tissues.inside(0), std::pair(0, tissues.size[0]));
+  EXPECT_EQ(tissues.inside(1), std::pair(kBorder, kBorder + 9));
+  EXPECT_EQ(tissues.inside(2), std::pair(0, tissues.size[2]));
+  EXPECT_EQ(tissues.low_border_mm(1), -1.5);
+  EXPECT_EQ(tissues.high_border_mm(1), 25.5);
+  EXPECT_EQ(tissues.high_border_mm(0), 39);
+}
+
 }  // namespace
 }  // namespace anatomesh
