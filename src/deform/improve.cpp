@@ -45,7 +45,7 @@ class Improver {
   ImproveReport run();
 
  private:
-  void smooth(int times);
+  void smooth(int times, double begin, double end);
   void coarsen_early();
   void coarsen_interfaces();
   void coarsen_inside();
@@ -66,13 +66,15 @@ void Improver::improve_all(MeshEditor& editor) {
 }
 
 // Bad tetrahedra stop the interfaces that would move; better ones let them.
-void Improver::smooth(int times) {
+// Reports its progress from `begin` to `end`.
+void Improver::smooth(int times, double begin, double end) {
   for (int n = 0; n < times; ++n) {
     MeshEditor editor(mesh_);
     improve_all(editor);
     mesh_ = editor.result();
     const MeshTopology topology = make_topology(mesh_);
-    settle(mesh_, topology, AngleGuard(mesh_, topology, bounds_), field_, kSettleSweeps, stage_.part("settle", 0, 1));
+    settle(mesh_, topology, AngleGuard(mesh_, topology, bounds_), field_, kSettleSweeps,
+           stage_.part("settle", begin + (end - begin) * n / times, begin + (end - begin) * (n + 1) / times));
   }
 }
 
@@ -133,11 +135,11 @@ ImproveReport Improver::run() {
   report_.tets_before = tissue_tets();
   coarsen_early();
   stage_.at(0.1);
-  smooth(kSmoothings);
+  smooth(kSmoothings, 0.1, 0.5);
   stage_.at(0.5);
   if (options_.surface_tolerance_mm > 0 || options_.target_tets > 0) {
     coarsen_interfaces();
-    smooth(kLaterSmoothings);
+    smooth(kLaterSmoothings, 0.65, 0.8);
   }
   stage_.at(0.8);
   coarsen_inside();
