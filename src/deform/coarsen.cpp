@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "base/vec.h"
+#include "boundary/interface_level.h"
 #include "mesh/vertex_star.h"
 
 namespace anatomesh {
@@ -48,7 +49,6 @@ class Coarsener {
   TissueId tissue_across(Local w, Local x, Local y) const;
   bool keeps_turns(Local w) const;
   bool stays_near(Local w) const;
-  double distance_from_boundary(Vec3 p, TissueId a, TissueId b) const;
 
   MeshEditor& mesh_;
   const SurfaceField& field_;
@@ -231,15 +231,6 @@ bool Coarsener::keeps_turns(Local w) const {
   return true;
 }
 
-double Coarsener::distance_from_boundary(Vec3 p, TissueId a, TissueId b) const {
-  const std::array<TissueId, 2> tissues = {a, b};
-  std::array<double, 2> share;
-  std::array<Vec3, 2> gradient;
-  field_.evaluate(p, tissues, share, gradient);
-  constexpr double kFlat = 1e-3;  // per mm; far from both
-  return std::abs(share[0] - share[1]) / std::max(kFlat, norm(gradient[0] - gradient[1]));
-}
-
 // The middles of the new interface faces, and of their edges, lie on the boundary.
 bool Coarsener::stays_near(Local w) const {
   const auto& points = star_.points();
@@ -248,7 +239,7 @@ bool Coarsener::stays_near(Local w) const {
     const TissueId a = star_.tets()[face.tet0].tissue, b = star_.tets()[face.tet1].tissue;
     const Vec3 x = points[face.x], y = points[face.y], to = points[w];
     for (const Vec3 p : {(1.0 / 3) * (x + y + to), 0.5 * (x + to), 0.5 * (y + to)}) {
-      if (distance_from_boundary(p, a, b) > limits_.surface_tolerance_mm) return false;
+      if (distance_from_boundary(field_, p, a, b) > limits_.surface_tolerance_mm) return false;
     }
   }
   return true;

@@ -1,5 +1,3 @@
-// Edge removal by dynamic programming: G. T. Klincsek, "Minimal triangulations of polygonal domains", 1980, as used by
-// J. R. Shewchuk, "Two discrete optimization algorithms for the topological improvement of tetrahedral meshes", 2002.
 #include "deform/improve_shapes.h"
 
 #include <algorithm>
@@ -7,6 +5,8 @@
 #include <vector>
 
 #include "base/vec.h"
+#include "deform/ring_filling.h"
+#include "deform/search_directions.h"
 #include "mesh/edge_ring.h"
 #include "mesh/vertex_star.h"
 
@@ -19,7 +19,8 @@ using Tet = std::array<VertexId, 4>;
 
 class ShapeImprover {
  public:
-  ShapeImprover(MeshEditor& mesh, const ShapeBounds& bounds) : mesh_(mesh), bounds_(bounds), star_(mesh) {}
+  ShapeImprover(MeshEditor& mesh, const ShapeBounds& bounds)
+      : mesh_(mesh), bounds_(bounds), star_(mesh), filling_(mesh) {}
 
   double slack_of(const Tet& t) const {
     return slack(bounds_, mesh_.point(t[0]), mesh_.point(t[1]), mesh_.point(t[2]), mesh_.point(t[3]));
@@ -32,52 +33,15 @@ class ShapeImprover {
   bool remove_face(TetId t, std::size_t opposite);
   bool move_vertex(VertexId v);
 
-  double fill_polygons(double enough);
-  void append_polygon(std::size_t i, std::size_t j);
   double worst_at(Vec3 p, double enough) const;
 
   MeshEditor& mesh_;
   const ShapeBounds& bounds_;
   VertexStar star_;
   EdgeRing ring_;
+  RingFilling filling_;
   std::vector<Tet> fresh_;
-  // Of the polygon link[i] .. link[j]: the best it can be filled, and the corner of the triangle at ij that does so.
-  std::array<std::array<double, EdgeRing::kMax>, EdgeRing::kMax> best_;
-  std::array<std::array<std::size_t, EdgeRing::kMax>, EdgeRing::kMax> apex_;
 };
-
-// Returns the worst slack of the best filling of the ring.
-double ShapeImprover::fill_polygons(double enough) {
-  const std::size_t n = ring_.size;
-  for (std::size_t i = 0; i + 1 < n; ++i) best_[i][i + 1] = 1;
-  for (std::size_t width = 2; width < n; ++width) {
-    for (std::size_t i = 0; i + width < n; ++i) {
-      const std::size_t j = i + width;
-      best_[i][j] = -2;
-      for (std::size_t k = i + 1; k < j; ++k) {
-        double worst = std::min(best_[i][k], best_[k][j]);
-        const double wanted = std::max(enough, best_[i][j]);
-        if (worst <= wanted) continue;
-        const VertexId x = ring_.link[i], y = ring_.link[k], z = ring_.link[j];
-        worst = std::min(worst, slack_of({x, y, z, ring_.b}));
-        if (worst > wanted) worst = std::min(worst, slack_of({y, x, z, ring_.a}));
-        if (worst <= best_[i][j]) continue;
-        best_[i][j] = worst;
-        apex_[i][j] = k;
-      }
-    }
-  }
-  return best_[0][n - 1];
-}
-
-void ShapeImprover::append_polygon(std::size_t i, std::size_t j) {
-  if (j == i + 1) return;
-  const std::size_t k = apex_[i][j];
-  fresh_.push_back({ring_.link[i], ring_.link[k], ring_.link[j], ring_.b});
-  fresh_.push_back({ring_.link[k], ring_.link[i], ring_.link[j], ring_.a});
-  append_polygon(i, k);
-  append_polygon(k, j);
-}
 
 bool ShapeImprover::remove_edge(VertexId a, VertexId b) {
   if (!find_ring(mesh_, a, b, ring_)) return false;
@@ -87,9 +51,9 @@ bool ShapeImprover::remove_edge(VertexId a, VertexId b) {
     if (mesh_.tissue(t) != tissue) return false;
     before = std::min(before, slack_of(mesh_.tet(t)));
   }
-  if (fill_polygons(before + kGain) <= before + kGain) return false;
+  if (filling_.fill(ring_, 0, ring_.size - 1, bounds_, before + kGain) <= before + kGain) return false;
   fresh_.clear();
-  append_polygon(0, ring_.size - 1);
+  filling_.append(0, ring_.size - 1, fresh_);
   mesh_.replace(ring_.all_tets(), fresh_, tissue);
   return true;
 }
@@ -131,20 +95,6 @@ double ShapeImprover::worst_at(Vec3 p, double enough) const {
 
 // A search along fixed directions with steps that get smaller.
 bool ShapeImprover::move_vertex(VertexId v) {
-  constexpr std::array<Vec3, 14> kDirections = {{{1, 0, 0},
-                                                 {-1, 0, 0},
-                                                 {0, 1, 0},
-                                                 {0, -1, 0},
-                                                 {0, 0, 1},
-                                                 {0, 0, -1},
-                                                 {.577, .577, .577},
-                                                 {.577, .577, -.577},
-                                                 {.577, -.577, .577},
-                                                 {.577, -.577, -.577},
-                                                 {-.577, .577, .577},
-                                                 {-.577, .577, -.577},
-                                                 {-.577, -.577, .577},
-                                                 {-.577, -.577, -.577}}};
   if (mesh_.tissues_at(v) != 1 || mesh_.is_outer(v)) return false;
   star_.gather(v);
   Vec3 at = star_.points()[0], mean;
@@ -169,7 +119,7 @@ bool ShapeImprover::move_vertex(VertexId v) {
   double step = 0.3 * std::sqrt(shortest2);
   for (int n = 0; n < 5; ++n) {
     bool moved = false;
-    for (const Vec3 d : kDirections) moved |= try_at(at + step * d);
+    for (const Vec3 d : kSearchDirections) moved |= try_at(at + step * d);
     if (!moved) step *= 0.4;
   }
   if (best <= before) return false;

@@ -36,21 +36,27 @@ std::uint8_t MeshEditor::count_tissues(VertexId v) const {
   return static_cast<std::uint8_t>(count);
 }
 
-// A vertex inside has a ball of tetrahedra around it: each face at it is there twice.
+// A vertex inside has a ball of tetrahedra around it: each face at it is there twice, in opposite orientations, and the
+// hashes of all of them, signed by orientation, add up to zero.
 bool MeshEditor::lies_on_bare_face(VertexId v) const {
-  std::vector<std::array<VertexId, 2>> faces;
-  faces.reserve(3 * tets_at(v).size());
+  // Even permutations, by the corner that they begin with.
+  constexpr std::array<std::array<std::size_t, 4>, 4> kOrder = {
+      {{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 3, 0, 1}, {3, 2, 1, 0}}};
+  const auto hash = [](VertexId low, VertexId high) {
+    std::uint64_t h = (std::uint64_t{low} << 32u | high) * 0x9e3779b97f4a7c15u;
+    h = (h ^ (h >> 32u)) * 0xd6e8feb86659fd93u;
+    return h ^ (h >> 32u);
+  };
+  std::uint64_t sum = 0;
   for (const TetId t : tets_at(v)) {
-    std::array<VertexId, 3> others;
-    std::ranges::copy_if(mesh_.tets[t], others.begin(), [v](VertexId w) { return w != v; });
-    std::ranges::sort(others);
-    faces.insert(faces.end(), {{others[0], others[1]}, {others[0], others[2]}, {others[1], others[2]}});
+    const auto& tet = mesh_.tets[t];
+    const auto& order = kOrder[static_cast<std::size_t>(std::ranges::find(tet, v) - tet.begin())];
+    for (std::size_t n = 0; n < 3; ++n) {
+      const VertexId x = tet[order[1 + n]], y = tet[order[1 + (n + 1) % 3]];
+      sum += x < y ? hash(x, y) : -hash(y, x);
+    }
   }
-  std::ranges::sort(faces);
-  for (std::size_t f = 0; f < faces.size(); f += 2) {
-    if (f + 1 == faces.size() || faces[f] != faces[f + 1]) return true;
-  }
-  return false;
+  return sum != 0;
 }
 
 TissueMesh MeshEditor::result() const {

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 #include <set>
 
 #include "anatomesh/errors.h"
@@ -10,9 +12,11 @@
 #include "base/vec.h"
 #include "deform/angle_guard.h"
 #include "deform/coarsen.h"
+#include "deform/flip_interfaces.h"
 #include "deform/improve_shapes.h"
 #include "deform/lattice_of.h"
 #include "deform/sizes.h"
+#include "deform/slide_vertices.h"
 #include "mesh/tissue_topology.h"
 #include "support/test_images.h"
 
@@ -113,9 +117,9 @@ TEST(Coarsen, StaysWithinTheTolerance) {
   Case c(testing::two_touching_cubes());
   c.improve();
   const auto before = testing::interfaces_of(c.mesh);
-  c.coarsen(0.1);
+  c.coarsen(0.3);
   const auto after = testing::interfaces_of(c.mesh);
-  EXPECT_LT(static_cast<double>(after.size()), 0.9 * static_cast<double>(before.size()));
+  EXPECT_LT(static_cast<double>(after.size()), 0.95 * static_cast<double>(before.size()));
   for (const auto& face : after) {
     if (before.contains(face)) continue;
     Vec3 middle;
@@ -123,7 +127,7 @@ TEST(Coarsen, StaysWithinTheTolerance) {
     std::array<double, 2> share;
     std::array<Vec3, 2> gradient;
     c.field.evaluate(middle, face.first, share, gradient);
-    EXPECT_LE(std::abs(share[0] - share[1]), 0.1 * norm(gradient[0] - gradient[1]) + 1e-9);
+    EXPECT_LE(std::abs(share[0] - share[1]), 0.3 * norm(gradient[0] - gradient[1]) + 1e-9);
   }
 }
 
@@ -201,6 +205,55 @@ TEST(ImproveShapes, MendsAMeshThatWasShaken) {
   EXPECT_GT(testing::worst_tissue_shape(mended.result()).min_dihedral_deg, 20);
 }
 
+/// Mean over the inner edges of the outer surface of 1 - cos of the angle between its faces there.
+double roughness_of(const TissueMesh& mesh) {
+  std::map<std::pair<VertexId, VertexId>, std::vector<Vec3>> normals;
+  for (const auto& face : testing::all_faces(mesh.tets)) {
+    if (face.tets.size() != 2 || (mesh.tissues[face.tets[0]] == 0) == (mesh.tissues[face.tets[1]] == 0)) continue;
+    const auto [a, b, c] = face.vertices;
+    const Vec3 n = cross(mesh.points_mm[b] - mesh.points_mm[a], mesh.points_mm[c] - mesh.points_mm[a]);
+    for (const auto& edge : {std::pair{a, b}, std::pair{a, c}, std::pair{b, c}})
+      normals[edge].push_back((1 / norm(n)) * n);
+  }
+  double sum = 0;
+  for (const auto& [edge, n] : normals) sum += 1 - std::abs(dot(n[0], n[1]));
+  return sum / static_cast<double>(normals.size());
+}
+
+TEST(FlipInterfaces, SmoothesAndKeepsTheTopologyAndTheBounds) {
+  double before_all = 0, after_all = 0;
+  for (const auto& [name, labels] : testing::all_shapes()) {
+    SCOPED_TRACE(name);
+    Case c(labels);
+    c.improve();
+    const TissueMesh before = c.mesh;
+    MeshEditor editor(c.mesh);
+    flip_interfaces(editor, c.field, kBounds, testing::quiet_stage());
+    const TissueMesh after = editor.result();
+    expect_sound(after);
+    expect_same_topology(after, before);
+    before_all += roughness_of(before);
+    after_all += roughness_of(after);
+  }
+  EXPECT_LT(after_all, before_all);
+}
+
+TEST(SlideVertices, MakesTheWorstBetterAndStaysNear) {
+  for (const auto& [name, labels] : testing::all_shapes()) {
+    SCOPED_TRACE(name);
+    Case c(labels);
+    const TissueMesh before = c.mesh;
+    MeshEditor editor(c.mesh);
+    for (int n = 0; n < 3; ++n) slide_vertices(editor, c.field, kBounds, 0.2, testing::quiet_stage());
+    const TissueMesh after = editor.result();
+    expect_sound(after);
+    expect_same_topology(after, before);
+    EXPECT_EQ(after.tets, before.tets);
+    EXPECT_GE(testing::worst_tissue_shape(after).min_dihedral_deg,
+              testing::worst_tissue_shape(before).min_dihedral_deg - 1e-9);
+  }
+}
+
 TEST(SplitLongEdges, GetsThemShorter) {
   Case c(testing::sphere(12));
   const double before = longest_edge(c.mesh, 1);
@@ -239,6 +292,16 @@ TEST(Improve, GuaranteesHoldOnEveryImage) {
       EXPECT_LE(report.tets_after, report.tets_before + report.shape_changes);
     }
   }
+}
+
+TEST(Improve, MeetsATarget) {
+  Case c(testing::random_blobs(7));
+  ImproveOptions options;
+  options.target_tets = c.improve().tets_after * 8 / 10;
+  const TissueMesh before = c.mesh;
+  EXPECT_LE(c.improve(options).tets_after, options.target_tets * 21 / 20) << "the last flips may add some";
+  expect_sound(c.mesh);
+  expect_same_topology(c.mesh, before);
 }
 
 TEST(Improve, DoesNotDependOnTheNumberOfThreads) {
