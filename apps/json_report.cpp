@@ -138,6 +138,7 @@ void to_json(Json& json, const Assessment& v) {
 }
 
 NLOHMANN_JSON_SERIALIZE_ENUM(Frame, {{Frame::lps, "lps"}, {Frame::ras, "ras"}})
+NLOHMANN_JSON_SERIALIZE_ENUM(FidelityStage, {{FidelityStage::lattice, "lattice"}, {FidelityStage::final, "final"}})
 NLOHMANN_JSON_SERIALIZE_ENUM(NonConnectivity, {{NonConnectivity::vertex, "vertex"},
                                                {NonConnectivity::edge, "edge"},
                                                {NonConnectivity::face, "face"},
@@ -148,7 +149,12 @@ void to_json(Json& json, const Material& v) {
 }
 
 void to_json(Json& json, const LatticeOptions& v) {
-  json = {{"bcc_size_mm", v.bcc_size_mm}, {"min_size_mm", v.min_size_mm}, {"fidelity", v.fidelity}};
+  json = {{"bcc_size_mm", v.bcc_size_mm},   {"min_size_mm", v.min_size_mm},
+          {"fidelity", v.fidelity},         {"fidelity_stage", v.fidelity_stage},
+          {"max_elements", v.max_elements}, {"elements_across", v.elements_across},
+          {"drop_islands", v.drop_islands}, {"allow_non_manifold", v.allow_non_manifold}};
+  json["size_label"] = Json::array();
+  for (const auto& [label, size] : v.size_label) json["size_label"].push_back({{"label", label}, {"size_mm", size}});
   json["fidelity_label"] = Json::array();
   for (const auto& [label, fidelity] : v.fidelity_label)
     json["fidelity_label"].push_back({{"label", label}, {"fidelity", fidelity}});
@@ -157,7 +163,8 @@ void to_json(Json& json, const LatticeOptions& v) {
 void to_json(Json& json, const DeformOptions& v) {
   json = {{"non_connectivity", v.non_connectivity}, {"iterations", v.iterations},
           {"min_dihedral_deg", v.min_dihedral_deg}, {"max_dihedral_deg", v.max_dihedral_deg},
-          {"min_mean_ratio", v.min_mean_ratio},     {"default_material", v.default_material}};
+          {"min_mean_ratio", v.min_mean_ratio},     {"gradation", v.gradation},
+          {"default_material", v.default_material}};
   json["material"] = Json::array();
   for (const auto& [label, material] : v.material) {
     Json entry = {{"label", label}};
@@ -180,8 +187,8 @@ void to_json(Json& json, const AssessOptions& v) {
 }
 
 void to_json(Json& json, const TissueOutcome& v) {
-  json = {{"label", v.label},       {"voxels", v.voxels},         {"tets", v.tets},
-          {"fidelity", v.fidelity}, {"lattice_f1", v.lattice_f1}, {"lattice_f2", v.lattice_f2}};
+  json = {{"label", v.label},           {"voxels", v.voxels},         {"tets", v.tets}, {"fidelity", v.fidelity},
+          {"lattice_f1", v.lattice_f1}, {"lattice_f2", v.lattice_f2}, {"f1", v.f1},     {"f2", v.f2}};
 }
 
 void to_json(Json& json, const StageTime& v) { json = {{"stage", v.stage}, {"seconds", v.seconds}}; }

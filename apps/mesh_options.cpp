@@ -17,12 +17,18 @@ namespace anatomesh::apps {
 namespace {
 
 /// Members of Options as the library's messages name them.
-constexpr std::array<std::pair<const char*, const char*>, 14> kOptionNames = {{
+constexpr std::array<std::pair<const char*, const char*>, 20> kOptionNames = {{
     {"default_material young_modulus_pa", "--young"},
     {"default_material poisson_ratio", "--poisson"},
     {"bcc_size_mm", "--bcc-size"},
     {"min_size_mm", "--min-size"},
     {"fidelity_label", "--fidelity-label"},
+    {"fidelity_stage", "--fidelity-stage"},
+    {"max_elements", "--max-elements"},
+    {"size_label", "--size-label"},
+    {"elements_across", "--elements-across"},
+    {"drop_islands", "--drop-islands"},
+    {"gradation", "--gradation"},
     {"non_connectivity", "--non-connectivity"},
     {"min_dihedral_deg", "--min-dihedral"},
     {"max_dihedral_deg", "--max-dihedral"},
@@ -123,18 +129,39 @@ void add_kind_option(CLI::App& command, std::map<Label, TissueKind>& kinds) {
       ->trigger_on_parse();
 }
 
-void add_lattice_options(CLI::App& command, LatticeOptions& lattice) {
+void add_lattice_options(CLI::App& command, MeshRequest& request) {
+  LatticeOptions& lattice = request.options.lattice;
   add_number(command, "--bcc-size", "MM", "spacing of the coarsest lattice [8 times the mean voxel spacing]",
              lattice.bcc_size_mm);
   add_number(command, "--min-size", "MM",
-             "smallest lattice spacing that fidelity may ask for [a quarter of --bcc-size]", lattice.min_size_mm);
-  add_number(command, "--fidelity", "F", "fidelity that each tissue is refined for, 0 < F <= 1 [0.95]",
-             lattice.fidelity);
+             "smallest lattice spacing that fidelity may ask for [an eighth of --bcc-size, a quarter with "
+             "--fidelity-stage lattice]",
+             lattice.min_size_mm);
+  add_parsed(command, "--fidelity", "F", "fidelity that each tissue is refined for, 0 < F <= 1 [0.95]",
+             [&request](const std::string& text) { request.fidelity = parse_number<double>(text); });
+  add_choice<FidelityStage>(command, "--fidelity-stage",
+                            "judge fidelity on the final mesh, or on the undeformed lattice as the paper does [final]",
+                            {{"final", FidelityStage::final}, {"lattice", FidelityStage::lattice}},
+                            lattice.fidelity_stage);
   add_labelled(command, "--fidelity-label", "LABEL=F", "fidelity of one tissue; may be repeated",
                [&lattice](std::optional<Label> label, double value) {
                  if (!label) throw InvalidOption("write it as LABEL=F, e.g. 3=0.99");
                  lattice.fidelity_label[*label] = value;
                });
+  add_number(command, "--max-elements", "N",
+             "most tetrahedra; the best fidelity that they allow (--fidelity is 1 unless given); 0: no limit [0]",
+             lattice.max_elements);
+  add_labelled(command, "--size-label", "LABEL=MM", "largest edge inside one tissue; may be repeated",
+               [&lattice](std::optional<Label> label, double value) {
+                 if (!label) throw InvalidOption("write it as LABEL=MM, e.g. 3=2.5");
+                 lattice.size_label[*label] = value;
+               });
+  add_number(command, "--elements-across", "N", "tetrahedra across a tissue where it is thin; 0: not asked [0]",
+             lattice.elements_across);
+  add_number(command, "--drop-islands", "N", "drop parts of a tissue of fewer voxels than this; 0: none [0]",
+             lattice.drop_islands);
+  command.add_flag("--allow-non-manifold", lattice.allow_non_manifold,
+                   "leave edges with more than two faces of a tissue's surface");
 }
 
 void add_material_option(CLI::App& command, const std::string& name, const std::string& value_name,
@@ -151,6 +178,8 @@ void add_deform_options(CLI::App& command, DeformOptions& deform) {
                                {"none", NonConnectivity::none}},
                               deform.non_connectivity);
   add_number(command, "--iterations", "N", "deformation iterations; 0 keeps the lattice [10]", deform.iterations);
+  add_number(command, "--gradation", "G", "largest ratio of neighbouring edges, above 1; 0: not asked [0]",
+             deform.gradation);
   add_bound_options(command, deform.min_dihedral_deg, deform.max_dihedral_deg, deform.min_mean_ratio);
 }
 
@@ -166,7 +195,7 @@ void add_material_options(CLI::App& command, MeshRequest& request) {
 }  // namespace
 
 void add_mesh_options(CLI::App& command, MeshRequest& request) {
-  add_lattice_options(command, request.options.lattice);
+  add_lattice_options(command, request);
   add_deform_options(command, request.options.deform);
   add_material_options(command, request);
   add_labels_option(command, request.ranges);
@@ -194,6 +223,8 @@ CLI::Option& add_labels_option(CLI::App& command, std::vector<LabelRange>& range
 Options options_of(const MeshRequest& request) {
   Options options = request.options;
   DeformOptions& deform = options.deform;
+  if (options.lattice.max_elements > 0) options.lattice.fidelity = 1;
+  if (request.fidelity) options.lattice.fidelity = *request.fidelity;
   const auto material_of = [&](Label label) -> Material& {
     return deform.material.try_emplace(label, deform.default_material).first->second;
   };
@@ -206,6 +237,7 @@ Options options_of(const MeshRequest& request) {
 void resolve_labels(Options& options, const std::vector<LabelRange>& ranges, const LabelCounts& present) {
   for (const auto& [label, fidelity] : options.lattice.fidelity_label)
     require_label(label, present, "--fidelity-label");
+  for (const auto& [label, size] : options.lattice.size_label) require_label(label, present, "--size-label");
   for (const auto& [label, material] : options.deform.material)
     require_label(label, present, "--tissue, --young or --poisson");
   options.labels = select_labels(ranges, present);

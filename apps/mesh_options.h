@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,7 +16,8 @@ namespace anatomesh::apps {
 
 /// What the user asked for, before the image is known.
 struct MeshRequest {
-  Options options;  ///< without labels and without the materials of single tissues
+  Options options;                 ///< without labels and without the materials of single tissues
+  std::optional<double> fidelity;  ///< as given; else the default, or 1 within a budget of elements
   std::vector<LabelRange> ranges;
   std::map<Label, TissueKind> kinds;  ///< whose materials come from the table of the literature
   std::map<Label, double> young_modulus_pa;

@@ -20,6 +20,8 @@ struct TissueOutcome {
   double fidelity = 0;       ///< the F asked for
   double lattice_f1 = 0;     ///< F1 reached on the undeformed lattice (0 to 1)
   double lattice_f2 = 0;     ///< F2 reached on the undeformed lattice (0 to 1)
+  double f1 = 0;             ///< F1 of the final mesh (0 to 1)
+  double f2 = 0;             ///< F2 of the final mesh (0 to 1)
 };
 
 /// Wall-clock time of one stage.

@@ -1,6 +1,7 @@
 // Every option of the mesher. The command line, Python, Slicer and SOFA carry the same names.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <vector>
 
@@ -18,13 +19,30 @@ struct Material {
   double poisson_ratio = 0.45;     ///< >= 0, < 0.5
 };
 
+/// Where a tissue's fidelity is judged: on the undeformed lattice, as in the paper, or on the final mesh, which takes
+/// far fewer elements for the same F.
+enum class FidelityStage { lattice, final };
+
 /// Stage "lattice": the body-centred cubic lattice and its refinement.
 struct LatticeOptions {
   double bcc_size_mm = 0;  ///< spacing of the coarsest lattice, > 0; 0: 8 times the mean voxel spacing
-  /// A tissue thinner than the smallest size (0.15 short of its fidelity there) gets half of it.
-  double min_size_mm = 0;  ///< smallest lattice spacing that fidelity may ask for, > 0; 0: a quarter of bcc_size
-  double fidelity = 0.95;  ///< 0 < F <= 1: F1 and F2 that each tissue is refined for
+  /// Smallest lattice spacing that fidelity may ask for, > 0; 0: an eighth of bcc_size, a quarter for a fidelity on the
+  /// lattice. There a tissue that is still 0.15 short of its fidelity gets half of it.
+  double min_size_mm = 0;
+  double fidelity = 0.95;                  ///< 0 < F <= 1: F1 and F2 that each tissue is refined for
   std::map<Label, double> fidelity_label;  ///< F of single tissues, in place of the above
+  FidelityStage fidelity_stage = FidelityStage::final;
+  /// Most tetrahedra of the final mesh; 0: as many as the fidelity takes. The best fidelity that they allow, F at most;
+  /// needs fidelity_stage final.
+  std::uint64_t max_elements = 0;
+  std::map<Label, double> size_label;  ///< largest edge inside a tissue, mm, > 0
+  /// Tetrahedra across a tissue where it is thin, >= 0: edges are at most its local thickness over this; 0: not asked.
+  int elements_across = 0;
+  /// Components (26-connected) of fewer voxels than this take the label around them; 0: none. They are named in the
+  /// result's warnings.
+  std::uint64_t drop_islands = 0;
+  /// Leaves the surfaces of tissues as the labels of the lattice make them, with edges of more than two faces.
+  bool allow_non_manifold = false;
 };
 
 /// Stage "deform": registration onto the boundary, angle guard, settling.
@@ -34,6 +52,7 @@ struct DeformOptions {
   double min_dihedral_deg = 15;        ///< 0 to 30
   double max_dihedral_deg = 155;       ///< 117 to 180
   double min_mean_ratio = 0.3;         ///< 0 to 0.5; 12 (3 V)^(2/3) / sum of squared edges, 1: regular
+  double gradation = 0;                ///< largest ratio of neighbouring edges, > 1; 0: not asked
   std::map<Label, Material> material;  ///< of single tissues; the rest takes default_material
   Material default_material;
 };

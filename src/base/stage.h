@@ -1,6 +1,7 @@
 // A stage's share of the progress, and where it asks whether to stop.
 #pragma once
 
+#include <cmath>
 #include <string_view>
 
 #include "anatomesh/errors.h"
@@ -20,7 +21,7 @@ class Stage {
   /// Reports that this share of the stage is done. Throws Cancelled.
   void at(double share) const {
     check_cancelled();
-    if (progress_.report) progress_.report(name_, begin_ + (end_ - begin_) * share);
+    if (progress_.report) progress_.report(name_, std::lerp(begin_, end_, share));
   }
 
   /// Throws Cancelled when the caller asked to stop.
@@ -30,7 +31,7 @@ class Stage {
 
   /// A stage of its own inside this one.
   Stage part(std::string_view name, double begin, double end) const {
-    return {progress_, name, begin_ + (end_ - begin_) * begin, begin_ + (end_ - begin_) * end};
+    return {progress_, name, std::lerp(begin_, end_, begin), std::lerp(begin_, end_, end)};
   }
 
   std::stop_token cancel_token() const { return progress_.cancel; }

@@ -8,8 +8,6 @@ namespace {
 // A move shorter than this share of an edge is not worth its tests.
 constexpr double kStill = 0.01;
 
-constexpr ShapeBounds kCushionBounds = {1, -1, 0.05};
-
 std::array<Vec3, 4> corners_with(const TissueMesh& mesh, TetId t, VertexId moved, Vec3 p) {
   std::array<Vec3, 4> corners;
   for (std::size_t n = 0; n < 4; ++n) {

@@ -1,8 +1,10 @@
 #include "deform/deform.h"
 
+#include <algorithm>
+
 #include "boundary/edge_points.h"
-#include "boundary/label_field.h"
 #include "deform/angle_guard.h"
+#include "deform/improve.h"
 #include "deform/register_mesh.h"
 #include "deform/settle.h"
 #include "deform/split_bridges.h"
@@ -10,7 +12,8 @@
 namespace anatomesh {
 namespace {
 
-constexpr int kSettleSweeps = 8;
+constexpr int kFirstIterations = 2;
+constexpr int kFirstSettleSweeps = 4, kSettleSweeps = 8;
 
 std::vector<Material> materials_of(const TissueImage& image, const DeformOptions& options) {
   std::vector<Material> materials(image.labels.size(), options.default_material);
@@ -23,18 +26,33 @@ std::vector<Material> materials_of(const TissueImage& image, const DeformOptions
 
 }  // namespace
 
-void deform(TissueMesh& mesh, const TissueImage& image, const DeformOptions& options, const Stage& stage) {
-  const ShapeBounds bounds =
-      ShapeBounds::from_degrees(options.min_dihedral_deg, options.max_dihedral_deg, options.min_mean_ratio);
-  split_bridges(mesh, bounds, stage);
+Deformer::Deformer(const TissueImage& image, const DeformOptions& options, const Stage& stage)
+    : image_(image),
+      options_(options),
+      bounds_(ShapeBounds::from_degrees(options.min_dihedral_deg, options.max_dihedral_deg, options.min_mean_ratio)),
+      materials_(materials_of(image, options)),
+      field_(image),
+      targets_(thin_edge_points(find_edge_points(image, stage.cancel_token()), options.non_connectivity)) {}
+
+void Deformer::approach(TissueMesh& mesh, const Stage& stage) const {
+  if (options_.iterations == 0) return;
+  split_bridges(mesh, bounds_, stage);
   const MeshTopology topology = make_topology(mesh);
-  const AngleGuard guard(mesh, topology, bounds);
-  const std::vector<EdgePoint> targets =
-      thin_edge_points(find_edge_points(image, stage.cancel_token()), options.non_connectivity);
-  const LabelField field(image);
-  register_mesh(mesh, topology, guard, field, targets, materials_of(image, options), options.iterations,
+  const AngleGuard guard(mesh, topology, bounds_);
+  register_mesh(mesh, topology, guard, field_, targets_, materials_, std::min(options_.iterations, kFirstIterations),
                 stage.part("register", 0.1, 0.7));
-  settle(mesh, topology, guard, field, kSettleSweeps, stage.part("settle", 0.7, 1.0));
+  settle(mesh, topology, guard, field_, kFirstSettleSweeps, stage.part("settle", 0.7, 1.0));
+}
+
+void Deformer::finish(TissueMesh& mesh, const ImproveOptions& improvement, const Stage& stage) const {
+  if (options_.iterations == 0) return;
+  const MeshTopology topology = make_topology(mesh);
+  const AngleGuard guard(mesh, topology, bounds_);
+  if (options_.iterations > kFirstIterations)
+    register_mesh(mesh, topology, guard, field_, targets_, materials_, options_.iterations - kFirstIterations,
+                  stage.part("register", 0.1, 0.7));
+  settle(mesh, topology, guard, field_, kSettleSweeps, stage.part("settle", 0.7, 0.8));
+  improve(mesh, field_, bounds_, improvement, stage.part("improve", 0.8, 1.0));
 }
 
 }  // namespace anatomesh

@@ -1,17 +1,42 @@
 // The deformation of the labelled lattice onto the boundaries of the image's tissues.
 #pragma once
 
+#include <vector>
+
 #include "anatomesh/options.h"
 #include "base/stage.h"
+#include "boundary/edge_points.h"
+#include "boundary/label_field.h"
+#include "deform/improve.h"
 #include "image/tissue_image.h"
+#include "mesh/tet_shape.h"
 #include "mesh/tissue_mesh.h"
 
 namespace anatomesh {
 
-/// Registers the mesh onto the image's edge points (options.iterations times), then settles it; every tetrahedron stays
-/// inside the bounds of the options throughout, as those of the lattice are. Edges that would hold the surface back
-/// are split first; the tissues' volumes and surfaces on the lattice stay as they are.
-/// Throws Cancelled.
-void deform(TissueMesh& mesh, const TissueImage& image, const DeformOptions& options, const Stage& stage);
+/// Deforms lattices over one image in two steps, so that the pipeline can look at the first and refine the lattice
+/// where it falls short. Every tetrahedron stays inside the bounds of the options throughout, as those of the lattice
+/// are. Holds references to the image and the options, which must outlive it.
+class Deformer {
+ public:
+  /// Finds the image's edge points. Throws Cancelled.
+  Deformer(const TissueImage& image, const DeformOptions& options, const Stage& stage);
+
+  /// Takes a lattice to the boundaries, near enough to judge its fidelity: edges that would hold the surface back are
+  /// split, the mesh is registered onto the image's edge points (in the first two of options.iterations) and settled.
+  /// The tissues' volumes and surfaces on the lattice stay as they are. Nothing for no iterations. Throws Cancelled.
+  void approach(TissueMesh& mesh, const Stage& stage) const;
+
+  /// The other iterations and settling in full, then fewer and better tetrahedra. Throws Cancelled.
+  void finish(TissueMesh& mesh, const ImproveOptions& improvement, const Stage& stage) const;
+
+ private:
+  const TissueImage& image_;
+  const DeformOptions& options_;
+  ShapeBounds bounds_;
+  std::vector<Material> materials_;  // one a tissue
+  LabelField field_;
+  std::vector<EdgePoint> targets_;
+};
 
 }  // namespace anatomesh

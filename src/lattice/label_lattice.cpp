@@ -93,9 +93,9 @@ class LabelLattice::Impl {
   std::vector<TetRef> leaves_to_mend(const FidelityGap& gap) const;
   LabelledLattice make_whole(const Stage& stage);
   MendPlan mend_plan() const { return {place_.origin_mm, place_.unit_mm, deepest_, !plan_.allow_non_manifold}; }
-  void raise_targets(const std::vector<LatticeFidelity>& reached);
-  std::vector<LatticeFidelity> inherited_fidelity() const;
-  std::vector<LatticeFidelity> fidelity() const;
+  void raise_targets(const std::vector<Fidelity>& reached);
+  std::vector<Fidelity> inherited_fidelity() const;
+  std::vector<Fidelity> fidelity() const;
   std::vector<Demand> demands() const;
   bool wants_refinement(TetRef leaf, const std::vector<Demand>& demands) const;
   template <class Visit>
@@ -121,8 +121,8 @@ void LabelLattice::Impl::visit_parts(const LabelledLeaf& leaf, const Visit& visi
 }
 
 // Voxels of the pure tetrahedra that handed their label down without counting.
-std::vector<LatticeFidelity> LabelLattice::Impl::inherited_fidelity() const {
-  std::vector<LatticeFidelity> fidelity(image_.labels.size());
+std::vector<Fidelity> LabelLattice::Impl::inherited_fidelity() const {
+  std::vector<Fidelity> fidelity(image_.labels.size());
   for (std::size_t t = 0; t < fidelity.size(); ++t) fidelity[t].voxels = image_.counts[t];
   for (int level = 0; level < lattice_.max_level(); ++level) {
     for (std::uint32_t slot = 0; slot < lattice_.slot_count(level); ++slot) {
@@ -146,7 +146,7 @@ constexpr double kFarOff = 0.25;
 }  // namespace
 
 std::vector<Demand> LabelLattice::Impl::demands() const {
-  std::vector<LatticeFidelity> fidelity = inherited_fidelity();
+  std::vector<Fidelity> fidelity = inherited_fidelity();
   std::vector<Demand> demands(fidelity.size(), {0, true, false});
   std::vector<double> volume_mm3(fidelity.size(), 0);
   for (const LabelledLeaf& leaf : leaves_.list()) {
@@ -161,7 +161,7 @@ std::vector<Demand> LabelLattice::Impl::demands() const {
   }
   demands[0].absent = false;
   for (std::size_t t = 1; t < demands.size(); ++t) {
-    const LatticeFidelity& f = fidelity[t];
+    const Fidelity& f = fidelity[t];
     if (f.f1() < target_[t] || f.f2() < target_[t]) demands[t].level_limit = plan_.levels;
     if (std::min(f.f1(), f.f2()) < plan_.fidelity[t] - kFarShort)
       demands[t].level_limit = std::min(plan_.levels + 1, deepest_);
@@ -212,7 +212,7 @@ bool LabelLattice::Impl::refine_until_faithful(const Stage& stage) {
 }
 
 // What the removal of label noise took from a tissue is asked for on top.
-void LabelLattice::Impl::raise_targets(const std::vector<LatticeFidelity>& reached) {
+void LabelLattice::Impl::raise_targets(const std::vector<Fidelity>& reached) {
   constexpr double kMargin = 0.01;
   for (std::size_t t = 1; t < target_.size(); ++t) {
     const double lacking = plan_.fidelity[t] - std::min(reached[t].f1(), reached[t].f2());
@@ -220,8 +220,8 @@ void LabelLattice::Impl::raise_targets(const std::vector<LatticeFidelity>& reach
   }
 }
 
-std::vector<LatticeFidelity> LabelLattice::Impl::fidelity() const {
-  std::vector<LatticeFidelity> fidelity = inherited_fidelity();
+std::vector<Fidelity> LabelLattice::Impl::fidelity() const {
+  std::vector<Fidelity> fidelity = inherited_fidelity();
   for (const LabelledLeaf& leaf : leaves_.list()) {
     visit_parts(leaf, [&](const Vote& v, const auto&, std::uint32_t) {
       fidelity[v.tissue].in_tets += v.count;

@@ -23,9 +23,9 @@ struct LatticePlan {
   bool allow_non_manifold = false;  ///< leaves the tissues' surfaces as the labels make them
 };
 
-/// Fidelity of one tissue on the lattice (section "fidelity" of the paper): S1 is the set of voxels in its
-/// tetrahedra, S2 the set of its voxels.
-struct LatticeFidelity {
+/// Fidelity of one tissue (section "fidelity" of the paper): S1 is the set of voxels in its tetrahedra, S2 the set of
+/// its voxels.
+struct Fidelity {
   std::uint64_t in_tets = 0;  ///< |S1|
   std::uint64_t hits = 0;     ///< |S1 and S2|
   std::uint64_t voxels = 0;   ///< |S2|
@@ -34,8 +34,8 @@ struct LatticeFidelity {
 };
 
 struct LabelledLattice {
-  TissueMesh mesh;                        ///< with its cushion of background
-  std::vector<LatticeFidelity> fidelity;  ///< by tissue, [0] unused
+  TissueMesh mesh;                 ///< with its cushion of background
+  std::vector<Fidelity> fidelity;  ///< by tissue, [0] unused
 };
 
 /// Where the final mesh is wrong, and how much of it must be mended.

@@ -88,4 +88,26 @@ inline bool within(const ShapeBounds& bounds, Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
   return inside;
 }
 
+/// How far a tetrahedron is from its bounds: the smallest of the margins of both cosines and of the mean ratio. Not
+/// negative exactly inside the bounds, 1 at the most; -2 when not positively oriented. Cost: about 25 ns.
+inline double slack(const ShapeBounds& bounds, Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
+  const TetGeometry g(a, b, c, d);
+  if (!(g.volume6 > 0)) return -2;
+  double largest = -1, smallest = 1;
+  for (std::size_t e = 0; e < 6; ++e) {
+    const double cosine = g.cosine[e] / g.areas[e];
+    largest = std::max(largest, cosine);
+    smallest = std::min(smallest, cosine);
+  }
+  const double angles = std::min(bounds.largest_cos - largest, smallest - bounds.smallest_cos);
+  // The cube root is needed only where the mean ratio is what is nearest to its bound.
+  const double half_volume6 = 0.5 * g.volume6, square = half_volume6 * half_volume6;
+  const double edge = std::max(0.0, (bounds.min_mean_ratio + angles) / 12) * g.edges;
+  if (square >= edge * edge * edge) return angles;
+  return std::min(angles, 12 * std::cbrt(square) / g.edges - bounds.min_mean_ratio);
+}
+
+/// Bounds of the cushion: positive volumes with a little to spare.
+inline constexpr ShapeBounds kCushionBounds = {1, -1, 0.05};
+
 }  // namespace anatomesh

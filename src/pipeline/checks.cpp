@@ -80,6 +80,7 @@ void check_options(const Options& o) {
       {"bcc_size_mm", l.bcc_size_mm, 0, kInfinity, true, false},
       {"min_size_mm", l.min_size_mm, 0, kInfinity, true, false},
       {"fidelity", l.fidelity, 0, 1, false, true},
+      {"elements_across", static_cast<double>(l.elements_across), 0, 16, true, true},
       {"iterations", static_cast<double>(d.iterations), 0, 1000, true, true},
       {"min_dihedral_deg", d.min_dihedral_deg, 0, 30, true, true},
       {"max_dihedral_deg", d.max_dihedral_deg, 117, 180, true, true},
@@ -89,6 +90,8 @@ void check_options(const Options& o) {
       {"default_material young_modulus_pa", d.default_material.young_modulus_pa, 0, kInfinity, false, false},
       {"default_material poisson_ratio", d.default_material.poisson_ratio, 0, 0.5, true, false},
   };
+  if (d.gradation != 0) ranges.push_back({"gradation", d.gradation, 1, kInfinity, false, false});
+  for (const auto& [label, size] : l.size_label) ranges.push_back({"size_label", size, 0, kInfinity, false, false});
   for (const auto& [label, fidelity] : l.fidelity_label)
     ranges.push_back({"fidelity_label", fidelity, 0, 1, false, true});
   for (const auto& [label, material] : d.material) {
@@ -97,6 +100,9 @@ void check_options(const Options& o) {
   }
   for (const Range& r : ranges) require(r);
   if (l.bcc_size_mm > 0) require_ordered_sizes(l);
+  if (l.max_elements > 0 && l.fidelity_stage != FidelityStage::final)
+    throw InvalidOption("max_elements is " + std::to_string(l.max_elements) +
+                        "; it must be 0 unless fidelity_stage is final");
 }
 
 void check_image(const LabelImage& image) {
@@ -129,7 +135,9 @@ Options with_sizes_filled_in(const Options& options, const LabelImage& image) {
   Options filled = options;
   const Vec3 s = image.spacing_mm;
   if (filled.lattice.bcc_size_mm == 0) filled.lattice.bcc_size_mm = 8 * (s.x + s.y + s.z) / 3;
-  if (filled.lattice.min_size_mm == 0) filled.lattice.min_size_mm = filled.lattice.bcc_size_mm / 4;
+  if (filled.lattice.min_size_mm == 0)
+    filled.lattice.min_size_mm =
+        filled.lattice.bcc_size_mm / (filled.lattice.fidelity_stage == FidelityStage::final ? 8 : 4);
   require_ordered_sizes(filled.lattice);
   return filled;
 }
@@ -137,6 +145,7 @@ Options with_sizes_filled_in(const Options& options, const LabelImage& image) {
 void check_labels_exist(const Options& options, const TissueImage& tissues) {
   for (const Label label : options.labels) require_label(tissues, label, "labels");
   for (const auto& [label, fidelity] : options.lattice.fidelity_label) require_label(tissues, label, "fidelity_label");
+  for (const auto& [label, size] : options.lattice.size_label) require_label(tissues, label, "size_label");
   for (const auto& [label, material] : options.deform.material) require_label(tissues, label, "material");
 }
 
@@ -146,7 +155,8 @@ void check_memory(const Options& options, const LabelImage& image, const TissueI
   // The coarsest lattice covers the whole crop.
   constexpr double kTetsPerSquare = 12, kBytesPerTet = 700, kBytesPerVoxel = 6, kBytesPerCell = 1200;
   constexpr double kGib = 1024.0 * 1024 * 1024;
-  const double h = options.lattice.min_size_mm;
+  // A fidelity of the final mesh takes its smallest size in a few places only.
+  const double h = options.lattice.min_size_mm * (options.lattice.fidelity_stage == FidelityStage::final ? 2 : 1);
   const double tets = kTetsPerSquare * interface_area_mm2(tissues) / (h * h);
   double cells = 1;
   for (std::size_t a = 0; a < 3; ++a)

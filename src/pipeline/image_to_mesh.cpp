@@ -10,11 +10,11 @@
 #include "base/rotation.h"
 #include "base/stage.h"
 #include "base/vec.h"
-#include "deform/deform.h"
 #include "image/tissue_image.h"
 #include "lattice/label_lattice.h"
 #include "mesh/tet_shape.h"
 #include "pipeline/checks.h"
+#include "pipeline/rounds.h"
 
 namespace anatomesh {
 namespace {
@@ -24,8 +24,14 @@ class Stopwatch {
   explicit Stopwatch(std::vector<StageTime>& times) : times_(times) {}
   void stage_done(std::string name) {
     const auto now = Clock::now();
-    times_.push_back({std::move(name), std::chrono::duration<double>(now - start_).count()});
+    const double seconds = std::chrono::duration<double>(now - start_).count();
     start_ = now;
+    const auto same = std::ranges::find(times_, name, &StageTime::stage);
+    if (same == times_.end()) {
+      times_.push_back({std::move(name), seconds});
+    } else {
+      same->seconds += seconds;
+    }
   }
 
  private:
@@ -93,13 +99,13 @@ TetMesh finish(const TissueMesh& mesh, const TissueImage& image, const ToPhysica
 }
 
 std::vector<TissueOutcome> describe_tissues(const TissueImage& image, const LatticePlan& plan,
-                                            const LabelledLattice& lattice) {
+                                            const DeformedMesh& deformed) {
   std::vector<TissueOutcome> outcomes;
   for (std::size_t t = 1; t < image.labels.size(); ++t) {
-    outcomes.push_back(
-        {image.labels[t], image.counts[t], 0, plan.fidelity[t], lattice.fidelity[t].f1(), lattice.fidelity[t].f2()});
+    outcomes.push_back({image.labels[t], image.counts[t], 0, plan.fidelity[t], deformed.lattice[t].f1(),
+                        deformed.lattice[t].f2(), deformed.final[t].f1(), deformed.final[t].f2()});
   }
-  for (const TissueId t : lattice.mesh.tissues) {
+  for (const TissueId t : deformed.mesh.tissues) {
     if (t != 0) ++outcomes[t - 1u].tets;
   }
   return outcomes;
@@ -156,20 +162,14 @@ Result image_to_mesh(const LabelImage& image, const Options& options, const Prog
   watch.stage_done("labels");
 
   const LatticePlan plan = make_plan(tissues, result.options.lattice);
-  LabelLattice builder(tissues, plan);
-  LabelledLattice lattice = builder.build(Stage(progress, "lattice", 0.05, 0.3));
-  watch.stage_done("lattice");
-
-  if (options.deform.iterations > 0) {
-    deform(lattice.mesh, tissues, result.options.deform, Stage(progress, "deform", 0.3, 0.95));
-  }
-  watch.stage_done("deform");
+  const DeformedMesh deformed = refine_and_deform(tissues, plan, result.options, Stage(progress, "lattice", 0.05, 0.95),
+                                                  [&](std::string name) { watch.stage_done(std::move(name)); });
 
   const Stage finishing(progress, "finish", 0.95, 1.0);
-  result.tissues = describe_tissues(tissues, plan, lattice);
+  result.tissues = describe_tissues(tissues, plan, deformed);
   result.warnings = describe_losses(result.tissues);
-  describe_shrinkage(lattice.mesh, tissues, result.warnings);
-  result.mesh = finish(lattice.mesh, tissues, ToPhysical(image, options.frame));
+  describe_shrinkage(deformed.mesh, tissues, result.warnings);
+  result.mesh = finish(deformed.mesh, tissues, ToPhysical(image, options.frame));
   if (result.mesh.tets.empty()) throw MeshingFailed("no tissue could be represented; take a smaller bcc_size");
   watch.stage_done("finish");
   finishing.at(1);

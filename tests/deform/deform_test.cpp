@@ -17,7 +17,9 @@ namespace anatomesh {
 namespace {
 
 void deform_quietly(TissueMesh& mesh, const TissueImage& image, const DeformOptions& options = {}) {
-  deform(mesh, image, options, testing::quiet_stage());
+  const Deformer deformer(image, options, testing::quiet_stage());
+  deformer.approach(mesh, testing::quiet_stage());
+  deformer.finish(mesh, {}, testing::quiet_stage());
 }
 
 void expect_sound(const TissueMesh& mesh, const DeformOptions& options) {
@@ -149,7 +151,9 @@ TEST(Deform, StopsWhenAskedTo) {
                             if (fraction > 0.3) source.request_stop();
                           },
                           source.get_token()};
-  EXPECT_THROW(deform(mesh, image, {}, Stage(progress, "deform", 0, 1)), Cancelled);
+  const DeformOptions options;
+  const Deformer deformer(image, options, testing::quiet_stage());
+  EXPECT_THROW(deformer.approach(mesh, Stage(progress, "deform", 0, 1)), Cancelled);
   expect_sound(mesh, {});
 }
 

@@ -90,11 +90,11 @@ std::vector<std::set<TissueId>> tissues_at_voxels(const TissueImage& image, cons
 // A voxel centre on faces between two tissues may count for either.
 TEST(LabelLattice, FidelityIsThatOfTheMesh) {
   for_each_lattice([](const TissueImage& image, const LatticePlan&, const LabelledLattice& lattice) {
-    std::vector<LatticeFidelity> least(image.labels.size()), most(image.labels.size());
+    std::vector<Fidelity> least(image.labels.size()), most(image.labels.size());
     const auto tissues = tissues_at_voxels(image, lattice.mesh);
     for (std::size_t v = 0; v < tissues.size(); ++v) {
       for (const TissueId t : tissues[v]) {
-        LatticeFidelity& least_of = least[t];
+        Fidelity& least_of = least[t];
         const bool hit = image.voxels[v] == t;
         ++most[t].in_tets;
         most[t].hits += hit;

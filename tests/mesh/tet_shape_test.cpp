@@ -127,6 +127,22 @@ TEST(TetShape, WithinAgreesWithTheMeasure) {
   EXPECT_GT(inside, 1000);
 }
 
+TEST(TetShape, SlackIsTheSmallestMargin) {
+  std::mt19937 random(4);
+  for (const auto& bounds : {ShapeBounds::from_degrees(15, 155, 0.3), ShapeBounds::from_degrees(0, 180, 0.6)}) {
+    for (int n = 0; n < 20000; ++n) {
+      const Corners c = random_tet(random);
+      const ShapeMeasure shape = measure(c);
+      const double margin =
+          shape.mean_ratio == 0
+              ? -2
+              : std::min({bounds.largest_cos - shape.largest_cos, shape.smallest_cos - bounds.smallest_cos,
+                          shape.mean_ratio - bounds.min_mean_ratio});
+      EXPECT_NEAR(slack(bounds, c[0], c[1], c[2], c[3]), margin, 1e-12);
+    }
+  }
+}
+
 TEST(ShapeBounds, HoldOnTheRightSide) {
   const ShapeBounds bounds = ShapeBounds::from_degrees(20, 150, 0.3);
   const auto shape = [](double low_deg, double high_deg, double mean_ratio) {

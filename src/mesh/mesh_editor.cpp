@@ -1,0 +1,150 @@
+#include "mesh/mesh_editor.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include "base/parallel.h"
+#include "mesh/adjacency.h"
+
+namespace anatomesh {
+
+MeshEditor::MeshEditor(const TissueMesh& mesh) : mesh_(mesh) {
+  VertexLists<TetId> lists = tets_of_vertices(mesh_.points_mm.size(), mesh_.tets);
+  stars_.resize(lists.size());
+  for (std::size_t v = 0; v < stars_.size(); ++v) {
+    const std::uint32_t count = lists.begin[v + 1] - lists.begin[v];
+    stars_[v] = {lists.begin[v], count, count};
+  }
+  incident_ = std::move(lists.items);
+  tissue_tets_ = static_cast<std::size_t>(std::ranges::count_if(mesh_.tissues, [](TissueId t) { return t != 0; }));
+  tissues_at_.resize(stars_.size());
+  is_outer_.resize(stars_.size());
+  parallel_for(stars_.size(), [&](std::size_t v) {
+    tissues_at_[v] = count_tissues(static_cast<VertexId>(v));
+    is_outer_[v] = lies_on_bare_face(static_cast<VertexId>(v));
+  });
+}
+
+std::uint8_t MeshEditor::count_tissues(VertexId v) const {
+  constexpr std::size_t kMany = 8;
+  std::array<TissueId, kMany> seen;
+  std::size_t count = 0;
+  for (const TetId t : tets_at(v)) {
+    const auto end = seen.begin() + count;
+    if (count < kMany && std::find(seen.begin(), end, mesh_.tissues[t]) == end) seen[count++] = mesh_.tissues[t];
+  }
+  return static_cast<std::uint8_t>(count);
+}
+
+// A vertex inside has a ball of tetrahedra around it: each face at it is there twice.
+bool MeshEditor::lies_on_bare_face(VertexId v) const {
+  std::vector<std::array<VertexId, 2>> faces;
+  faces.reserve(3 * tets_at(v).size());
+  for (const TetId t : tets_at(v)) {
+    std::array<VertexId, 3> others;
+    std::ranges::copy_if(mesh_.tets[t], others.begin(), [v](VertexId w) { return w != v; });
+    std::ranges::sort(others);
+    faces.insert(faces.end(), {{others[0], others[1]}, {others[0], others[2]}, {others[1], others[2]}});
+  }
+  std::ranges::sort(faces);
+  for (std::size_t f = 0; f < faces.size(); f += 2) {
+    if (f + 1 == faces.size() || faces[f] != faces[f + 1]) return true;
+  }
+  return false;
+}
+
+TissueMesh MeshEditor::result() const {
+  TissueMesh living;
+  living.points_mm = mesh_.points_mm;
+  for (TetId t = 0; t < mesh_.tets.size(); ++t) {
+    if (!is_alive(t)) continue;
+    living.tets.push_back(mesh_.tets[t]);
+    living.tissues.push_back(mesh_.tissues[t]);
+  }
+  return with_cushion_last(living);
+}
+
+void MeshEditor::attach(VertexId v, TetId t) {
+  Star& star = stars_[v];
+  if (star.count == star.capacity) {  // on to a place twice as large at the end
+    const std::uint32_t begin = static_cast<std::uint32_t>(incident_.size()), capacity = 2 * star.capacity + 8;
+    incident_.resize(begin + capacity);
+    std::copy_n(incident_.begin() + star.begin, star.count, incident_.begin() + begin);
+    star = {begin, star.count, capacity};
+  }
+  incident_[star.begin + star.count++] = t;
+}
+
+void MeshEditor::detach(VertexId v, TetId t) {
+  Star& star = stars_[v];
+  TetId* const first = incident_.data() + star.begin;
+  *std::find(first, first + star.count, t) = first[star.count - 1];
+  --star.count;
+}
+
+void MeshEditor::kill(TetId t) {
+  for (const VertexId v : mesh_.tets[t]) detach(v, t);
+  if (mesh_.tissues[t] != 0) --tissue_tets_;
+  mesh_.tets[t][0] = kDead;
+  free_.push_back(t);
+}
+
+void MeshEditor::add(const std::array<VertexId, 4>& tet, TissueId tissue) {
+  auto t = static_cast<TetId>(mesh_.tets.size());
+  if (free_.empty()) {
+    mesh_.tets.push_back(tet);
+    mesh_.tissues.push_back(tissue);
+  } else {
+    t = free_.back();
+    free_.pop_back();
+    mesh_.tets[t] = tet;
+    mesh_.tissues[t] = tissue;
+  }
+  for (const VertexId v : tet) attach(v, t);
+  if (tissue != 0) ++tissue_tets_;
+}
+
+void MeshEditor::collapse(VertexId v, VertexId w) {
+  while (stars_[v].count > 0) {
+    const TetId t = incident_[stars_[v].begin + stars_[v].count - 1];
+    auto& tet = mesh_.tets[t];
+    if (std::ranges::find(tet, w) != tet.end()) {
+      kill(t);
+      continue;
+    }
+    *std::ranges::find(tet, v) = w;
+    --stars_[v].count;
+    attach(w, t);
+  }
+}
+
+void MeshEditor::replace(std::span<const TetId> old, std::span<const std::array<VertexId, 4>> fresh, TissueId tissue) {
+  for (const TetId t : old) kill(t);
+  for (const auto& tet : fresh) add(tet, tissue);
+}
+
+VertexId MeshEditor::split(VertexId a, VertexId b, Vec3 at) {
+  std::vector<TetId> ring;
+  std::ranges::copy_if(tets_at(a), std::back_inserter(ring),
+                       [&](TetId t) { return std::ranges::find(mesh_.tets[t], b) != mesh_.tets[t].end(); });
+  const VertexId m = add_vertex(at);
+  for (const TetId t : ring) {
+    std::array<std::array<VertexId, 4>, 2> halves = {mesh_.tets[t], mesh_.tets[t]};
+    *std::ranges::find(halves[0], a) = m;
+    *std::ranges::find(halves[1], b) = m;
+    replace(std::array{t}, halves, mesh_.tissues[t]);
+  }
+  tissues_at_[m] = count_tissues(m);
+  is_outer_[m] = lies_on_bare_face(m);
+  return m;
+}
+
+VertexId MeshEditor::add_vertex(Vec3 p) {
+  mesh_.points_mm.push_back(p);
+  stars_.emplace_back();
+  tissues_at_.push_back(0);
+  is_outer_.push_back(0);
+  return static_cast<VertexId>(stars_.size() - 1);
+}
+
+}  // namespace anatomesh

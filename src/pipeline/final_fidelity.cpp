@@ -1,0 +1,84 @@
+#include "pipeline/final_fidelity.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/parallel.h"
+#include "base/vec.h"
+#include "mesh/voxel_owners.h"
+
+namespace anatomesh {
+namespace {
+
+// Not every wrong voxel in a refined tetrahedron becomes right, but its neighbours gain as well. Asking for a little
+// more than F saves rounds at the end.
+constexpr double kOvershoot = 1, kMargin = 0.004;
+
+std::vector<Vec3> in_voxels(const std::vector<Vec3>& points_mm, const TissueImage& image) {
+  std::vector<Vec3> points(points_mm.size());
+  parallel_for(points.size(), [&](std::size_t v) {
+    for (std::size_t a = 0; a < 3; ++a)
+      points[v][a] = points_mm[v][a] / image.spacing_mm[a] - static_cast<double>(image.first[a]);
+  });
+  return points;
+}
+
+}  // namespace
+
+MeshFidelity measure_fidelity(const TissueMesh& mesh, const TissueImage& image, const Stage& stage) {
+  GridSize size;
+  for (std::size_t a = 0; a < 3; ++a) size[a] = static_cast<std::size_t>(image.size[a]);
+  MeshFidelity result;
+  result.tissue_in_mesh.resize(image.voxels.size());
+  std::vector<std::vector<Fidelity>> parts((size[2] + OwnedSlices::kMost - 1) / OwnedSlices::kMost);
+  const std::vector<Vec3> points = in_voxels(mesh.points_mm, image);
+  for_each_owned_slices(points, mesh.tets, size, stage.cancel_token(), [&](const OwnedSlices& slices) {
+    auto& counts = parts[slices.first / OwnedSlices::kMost];
+    counts.resize(image.labels.size());
+    const std::size_t begin = slices.first * size[0] * size[1];
+    for (std::size_t v = 0; v < slices.owner.size(); ++v) {
+      const TissueId in_mesh = slices.owner[v] == kNoTet ? TissueId{0} : mesh.tissues[slices.owner[v]];
+      result.tissue_in_mesh[begin + v] = in_mesh;
+      ++counts[in_mesh].in_tets;
+      counts[in_mesh].hits += in_mesh == image.voxels[begin + v];
+    }
+  });
+  result.tissues.resize(image.labels.size());
+  for (const auto& part : parts) {
+    for (std::size_t t = 0; t < part.size(); ++t) {
+      result.tissues[t].in_tets += part[t].in_tets;
+      result.tissues[t].hits += part[t].hits;
+    }
+  }
+  for (std::size_t t = 0; t < image.labels.size(); ++t) result.tissues[t].voxels = image.counts[t];
+  return result;
+}
+
+FidelityGap find_gap(MeshFidelity& reached, const TissueImage& image, std::span<const double> wanted) {
+  FidelityGap gap;
+  gap.to_mend.assign(image.labels.size(), 0);
+  std::vector<char> lacks(image.labels.size(), 0), exceeds(image.labels.size(), 0);
+  for (std::size_t t = 1; t < image.labels.size(); ++t) {
+    const Fidelity& f = reached.tissues[t];
+    const auto hits = static_cast<double>(f.hits);
+    const double asked = std::min(1.0, wanted[t] + kMargin);
+    lacks[t] = f.f2() < wanted[t];
+    exceeds[t] = f.f1() < wanted[t];
+    double wrong = 0;
+    if (lacks[t]) wrong += asked * static_cast<double>(f.voxels) - hits;
+    if (exceeds[t]) wrong += static_cast<double>(f.in_tets) - hits / asked;
+    gap.to_mend[t] = static_cast<std::uint64_t>(std::ceil(kOvershoot * wrong));
+  }
+  gap.wrong = std::move(reached.tissue_in_mesh);
+  parallel_for(
+      gap.wrong.size(),
+      [&](std::size_t v) {
+        const TissueId asked = image.voxels[v], got = gap.wrong[v];
+        gap.wrong[v] = asked == got ? TissueId{0} : lacks[asked] ? asked : exceeds[got] ? got : TissueId{0};
+      },
+      1 << 16);
+  return gap;
+}
+
+}  // namespace anatomesh
