@@ -61,7 +61,8 @@ void LeafMesher::add(const LabelledLeaf& leaf, bool bulk, const Tets& old, Tets&
   Place& place = places_[static_cast<std::size_t>(leaf.tet.level)][leaf.tet.slot];
   const auto parts = static_cast<std::size_t>(leaf.split().count), first = tets.size();
   if (place.first_tet != Place{}.first_tet && place.split_edges == leaf.split_edges) {
-    tets.insert(tets.end(), old.begin() + place.first_tet, old.begin() + place.first_tet + static_cast<std::ptrdiff_t>(parts));
+    tets.insert(tets.end(), old.begin() + place.first_tet,
+                old.begin() + place.first_tet + static_cast<std::ptrdiff_t>(parts));
   } else {
     const auto nodes = nodes_of(lattice_, leaf.tet, leaf.split_edges);
     if (bulk && !touches_near(nodes)) return;

@@ -30,7 +30,13 @@ class LatticeMender {
  public:
   LatticeMender(const TissueImage& image, const ImageComponents& components, RedGreenLattice& lattice,
                 VoxelVotes& votes, LabelledLeaves& leaves, LeafMesher& mesher, const MendPlan& plan)
-      : image_(image), components_(components), lattice_(lattice), votes_(votes), leaves_(leaves), mesher_(mesher), plan_(plan) {}
+      : image_(image),
+        components_(components),
+        lattice_(lattice),
+        votes_(votes),
+        leaves_(leaves),
+        mesher_(mesher),
+        plan_(plan) {}
 
   LeafMesh run(const Stage& stage) {
     for (int round = 0;; ++round) {
