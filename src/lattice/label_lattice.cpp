@@ -82,6 +82,7 @@ class LabelLattice::Impl {
         lattice_(place_.cells, deepest_level(place_, plan, plan.extra_levels + kMendLevels)),
         votes_(image, lattice_, place_.origin_mm, place_.unit_mm),
         leaves_(lattice_, votes_),
+        mesher_(lattice_, votes_, place_.origin_mm, place_.unit_mm),
         components_(image) {}
 
   LabelledLattice build(const Stage& stage);
@@ -92,7 +93,7 @@ class LabelLattice::Impl {
   bool refine_until_faithful(const Stage& stage);
   std::vector<TetRef> leaves_to_mend(const FidelityGap& gap) const;
   LabelledLattice make_whole(const Stage& stage);
-  MendPlan mend_plan() const { return {place_.origin_mm, place_.unit_mm, deepest_, !plan_.allow_non_manifold}; }
+  MendPlan mend_plan() const { return {place_.unit_mm, deepest_, !plan_.allow_non_manifold}; }
   void raise_targets(const std::vector<Fidelity>& reached);
   std::vector<Fidelity> inherited_fidelity() const;
   std::vector<Fidelity> fidelity() const;
@@ -109,6 +110,7 @@ class LabelLattice::Impl {
   RedGreenLattice lattice_;
   VoxelVotes votes_;
   LabelledLeaves leaves_;
+  LeafMesher mesher_;
   ImageComponents components_;
   int rounds_done_ = 0;
 };
@@ -232,7 +234,7 @@ std::vector<Fidelity> LabelLattice::Impl::fidelity() const {
 }
 
 LabelledLattice LabelLattice::Impl::make_whole(const Stage& stage) {
-  LeafMesh mended = mend_lattice(image_, components_, lattice_, votes_, leaves_, mend_plan(), stage);
+  LeafMesh mended = mend_lattice(image_, components_, lattice_, votes_, leaves_, mesher_, mend_plan(), stage);
   return {with_cushion_only(std::move(mended.mesh)), fidelity()};
 }
 
@@ -242,7 +244,7 @@ LabelledLattice LabelLattice::Impl::build(const Stage& stage) {
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     if (!refine_until_faithful(stage) && attempt > 0) break;
     stage.check_cancelled();
-    clean_leaves(lattice_, votes_, leaves_, mend_plan());
+    clean_leaves(votes_, leaves_, mesher_);
     raise_targets(fidelity());
   }
   LabelledLattice result = make_whole(stage);
@@ -284,7 +286,7 @@ std::optional<LabelledLattice> LabelLattice::Impl::refine(const FidelityGap& gap
   votes_.descend(lattice_.refine(marked));
   leaves_.collect(NewLabels::vote);
   stage.check_cancelled();
-  clean_leaves(lattice_, votes_, leaves_, mend_plan());
+  clean_leaves(votes_, leaves_, mesher_);
   return make_whole(stage);
 }
 

@@ -4,20 +4,22 @@
 #include <cmath>
 #include <utility>
 
-#include "base/parallel.h"
 #include "base/vec.h"
-#include "lattice/lattice_point_map.h"
 
 namespace anatomesh {
 namespace {
 
-// Nodes 0 .. 9 of a leaf (vertices, edge midpoints), in units of the finest level.
-std::array<LatticePoint, 10> nodes_of(const RedGreenLattice& lattice, TetRef leaf) {
+// Nodes 0 .. 9 of a leaf (vertices, and midpoints of split edges; the first vertex for others), in units of the finest
+// level.
+std::array<LatticePoint, 10> nodes_of(const RedGreenLattice& lattice, TetRef leaf, unsigned split_edges) {
   const LatticePoint b = lattice.barycentre(leaf);
   std::array<LatticePoint, 10> nodes;
   const auto vertices = bcc_vertices(b);
+  nodes.fill(vertices[0]);
   std::copy(vertices.begin(), vertices.end(), nodes.begin());
-  for (int e = 0; e < 6; ++e) nodes[static_cast<std::size_t>(4 + e)] = bcc_edge_midpoint(b, e);
+  for (int e = 0; e < 6; ++e) {
+    if (split_edges >> e & 1) nodes[static_cast<std::size_t>(4 + e)] = bcc_edge_midpoint(b, e);
+  }
   for (LatticePoint& node : nodes) {
     for (std::int32_t& c : node) c *= 1 << (lattice.max_level() - leaf.level);
   }
@@ -26,37 +28,64 @@ std::array<LatticePoint, 10> nodes_of(const RedGreenLattice& lattice, TetRef lea
 
 }  // namespace
 
-LeafMesh mesh_of_leaves(const RedGreenLattice& lattice, const VoxelVotes& votes,
-                        const std::vector<LabelledLeaf>& leaves, Vec3 origin_mm, double unit_mm) {
+LeafMesh LeafMesher::mesh(const std::vector<LabelledLeaf>& leaves) {
+  places_.resize(static_cast<std::size_t>(lattice_.max_level()) + 1);
+  for (int level = 0; level <= lattice_.max_level(); ++level)
+    places_[static_cast<std::size_t>(level)].resize(lattice_.slot_count(level));
+  const Tets old = std::move(tets_);
   LeafMesh result;
-  LatticePointMap vertices;
-  const auto is_bulk = [&](const LabelledLeaf& leaf) {
-    return leaf.votes[0].tissue == 0 && !leaf.decided && votes.hands_label_down(leaf.tet);
-  };
+  Tets& tets = result.mesh.tets;
   for (const bool bulk : {false, true}) {
-    const std::size_t near = vertices.points().size();
     for (std::uint32_t i = 0; i < leaves.size(); ++i) {
       const LabelledLeaf& leaf = leaves[i];
-      if (is_bulk(leaf) != bulk) continue;
-      const auto nodes = nodes_of(lattice, leaf.tet);
-      if (bulk && std::none_of(nodes.begin(), nodes.end(), [&](auto& node) { return vertices.find(node) < near; }))
-        continue;
-      const bool positive = is_positive(lattice.barycentre(leaf.tet));
-      for (std::uint32_t part = 0; part < static_cast<std::uint32_t>(leaf.split().count); ++part) {
-        std::array<VertexId, 4> tet;
-        for (std::size_t n = 0; n < 4; ++n) tet[n] = vertices.insert(nodes[leaf.split().tets[part][n]]);
-        if (!positive) std::swap(tet[2], tet[3]);
-        result.mesh.tets.push_back(tet);
+      const bool is_bulk = leaf.votes[0].tissue == 0 && !leaf.decided && votes_.hands_label_down(leaf.tet);
+      if (is_bulk != bulk) continue;
+      const std::size_t first = tets.size();
+      add(leaf, bulk, old, tets);
+      for (std::uint32_t part = 0; part < tets.size() - first; ++part) {
         result.mesh.tissues.push_back(leaf.votes[part].tissue);
         result.origins.push_back({i, part});
       }
     }
   }
-  result.points = vertices.points();
-  const double fine_unit = std::ldexp(unit_mm, -lattice.max_level());
+  tets_ = tets;
+  result.points = vertices_.points();
+  const double fine_unit = std::ldexp(unit_mm_, -lattice_.max_level());
   for (const LatticePoint& p : result.points)
-    result.mesh.points_mm.push_back(origin_mm + Vec3{fine_unit * p[0], fine_unit * p[1], fine_unit * p[2]});
+    result.mesh.points_mm.push_back(origin_mm_ + Vec3{fine_unit * p[0], fine_unit * p[1], fine_unit * p[2]});
   return result;
+}
+
+// Its tetrahedra; of bulk background only where it touches something else.
+void LeafMesher::add(const LabelledLeaf& leaf, bool bulk, const Tets& old, Tets& tets) {
+  Place& place = places_[static_cast<std::size_t>(leaf.tet.level)][leaf.tet.slot];
+  const auto parts = static_cast<std::size_t>(leaf.split().count), first = tets.size();
+  if (place.first_tet != Place{}.first_tet && place.split_edges == leaf.split_edges) {
+    tets.insert(tets.end(), old.begin() + place.first_tet,
+                old.begin() + place.first_tet + static_cast<std::ptrdiff_t>(parts));
+  } else {
+    const auto nodes = nodes_of(lattice_, leaf.tet, leaf.split_edges);
+    if (bulk && !touches_near(nodes)) return;
+    const bool positive = is_positive(lattice_.barycentre(leaf.tet));
+    for (std::size_t part = 0; part < parts; ++part) {
+      std::array<VertexId, 4> tet;
+      for (std::size_t n = 0; n < 4; ++n) tet[n] = vertices_.insert(nodes[leaf.split().tets[part][n]]);
+      if (!positive) std::swap(tet[2], tet[3]);
+      tets.push_back(tet);
+    }
+  }
+  place = {static_cast<std::uint32_t>(first), leaf.split_edges};
+  near_.resize(vertices_.points().size());
+  for (std::size_t t = first; !bulk && t < tets.size(); ++t) {
+    for (const VertexId v : tets[t]) near_[v] = 1;
+  }
+}
+
+bool LeafMesher::touches_near(const std::array<LatticePoint, 10>& nodes) const {
+  return std::any_of(nodes.begin(), nodes.end(), [&](const LatticePoint& node) {
+    const std::uint32_t v = vertices_.find(node);
+    return v != LatticePointMap::kNone && near_[v];
+  });
 }
 
 TissueMesh with_cushion_only(TissueMesh mesh) {

@@ -29,8 +29,14 @@ void record(const TissueMesh& mesh, const std::vector<LeafMesh::Origin>& origins
 class LatticeMender {
  public:
   LatticeMender(const TissueImage& image, const ImageComponents& components, RedGreenLattice& lattice,
-                VoxelVotes& votes, LabelledLeaves& leaves, const MendPlan& plan)
-      : image_(image), components_(components), lattice_(lattice), votes_(votes), leaves_(leaves), plan_(plan) {}
+                VoxelVotes& votes, LabelledLeaves& leaves, LeafMesher& mesher, const MendPlan& plan)
+      : image_(image),
+        components_(components),
+        lattice_(lattice),
+        votes_(votes),
+        leaves_(leaves),
+        mesher_(mesher),
+        plan_(plan) {}
 
   LeafMesh run(const Stage& stage) {
     for (int round = 0;; ++round) {
@@ -69,6 +75,7 @@ class LatticeMender {
   RedGreenLattice& lattice_;
   VoxelVotes& votes_;
   LabelledLeaves& leaves_;
+  LeafMesher& mesher_;
   const MendPlan& plan_;
 
   TetComplex complex_;
@@ -81,7 +88,7 @@ class LatticeMender {
 };
 
 void LatticeMender::take_mesh() {
-  LeafMesh taken = mesh_of_leaves(lattice_, votes_, leaves_.list(), plan_.origin_mm, plan_.unit_mm);
+  LeafMesh taken = mesher_.mesh(leaves_.list());
   complex_ = make_complex(std::move(taken.mesh));
   points_ = std::move(taken.points);
   origins_ = std::move(taken.origins);
@@ -210,9 +217,8 @@ void LatticeMender::refine(const std::vector<TetId>& marked) {
 
 }  // namespace
 
-void clean_leaves(const RedGreenLattice& lattice, const VoxelVotes& votes, LabelledLeaves& leaves,
-                  const MendPlan& plan) {
-  LeafMesh taken = mesh_of_leaves(lattice, votes, leaves.list(), plan.origin_mm, plan.unit_mm);
+void clean_leaves(const VoxelVotes& votes, LabelledLeaves& leaves, LeafMesher& mesher) {
+  LeafMesh taken = mesher.mesh(leaves.list());
   const auto has_weak_vote = [&](TetId t) {
     const LabelledLeaf& leaf = leaves.list()[taken.origins[t].leaf];
     return !leaf.decided && !votes.hands_label_down(leaf.tet) &&
@@ -223,8 +229,9 @@ void clean_leaves(const RedGreenLattice& lattice, const VoxelVotes& votes, Label
 }
 
 LeafMesh mend_lattice(const TissueImage& image, const ImageComponents& components, RedGreenLattice& lattice,
-                      VoxelVotes& votes, LabelledLeaves& leaves, const MendPlan& plan, const Stage& stage) {
-  return LatticeMender(image, components, lattice, votes, leaves, plan).run(stage);
+                      VoxelVotes& votes, LabelledLeaves& leaves, LeafMesher& mesher, const MendPlan& plan,
+                      const Stage& stage) {
+  return LatticeMender(image, components, lattice, votes, leaves, mesher, plan).run(stage);
 }
 
 }  // namespace anatomesh

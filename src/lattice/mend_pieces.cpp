@@ -81,6 +81,7 @@ class PieceMender {
   void find_claims(std::size_t done);
   void find_holdings();
   void dissolve_empty_pieces();
+  void dissolve(const std::vector<TetId>& tets);
   void seed_absent_components();
   void cut_shared_pieces();
   void cut(const std::vector<TetId>& tets);
@@ -224,20 +225,22 @@ void PieceMender::dissolve_empty_pieces() {
   for (const Holding& h : holdings_) {
     if (h.voxels > 0 || home_[h.component] == h.piece) empty[h.piece] = 0;
   }
-  for (const auto& tets : tets_of(empty)) {
-    std::map<TissueId, std::uint32_t> faces;
-    for (const TetId t : tets) {
-      for (const TetId other : complex_.behind[t]) {
-        if (complex_.tissue(other) != complex_.tissue(t)) ++faces[complex_.tissue(other)];
-      }
+  for (const auto& tets : tets_of(empty)) dissolve(tets);
+}
+
+// Gives a piece to the neighbour behind most of its faces.
+void PieceMender::dissolve(const std::vector<TetId>& tets) {
+  std::map<TissueId, std::uint32_t> faces;
+  for (const TetId t : tets) {
+    for (const TetId other : complex_.behind[t]) {
+      if (complex_.tissue(other) != complex_.tissue(t)) ++faces[complex_.tissue(other)];
     }
-    if (faces.empty()) continue;
-    const auto best =
-        std::max_element(faces.begin(), faces.end(), [](auto& a, auto& b) { return a.second < b.second; });
-    for (const TetId t : tets) {
-      relabel(t, best->first, kNone);
-      locked_[t] = 0;
-    }
+  }
+  if (faces.empty()) return;
+  const auto best = std::max_element(faces.begin(), faces.end(), [](auto& a, auto& b) { return a.second < b.second; });
+  for (const TetId t : tets) {
+    relabel(t, best->first, kNone);
+    locked_[t] = 0;
   }
 }
 
@@ -437,7 +440,11 @@ void PieceMender::join_piece(std::uint32_t piece, const std::vector<TetId>& tets
     }
   }
   if (!found) {
-    for (const TetId t : tets) wants_refinement(t, kPathSize);
+    constexpr std::size_t kScrap = 64;  // tetrahedra
+    bool too_large = false;
+    for (const TetId t : tets) too_large = wants_refinement(t, kPathSize) || too_large;
+    const bool untouched = std::all_of(tets.begin(), tets.end(), [&](TetId t) { return complex_.tissue(t) == tissue; });
+    if (!too_large && untouched && tets.size() <= kScrap) dissolve(tets);  // walled in: no way for it
     return;
   }
   std::vector<TetId> path;
