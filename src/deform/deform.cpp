@@ -13,7 +13,7 @@ namespace anatomesh {
 namespace {
 
 constexpr int kFirstIterations = 2;
-constexpr int kFirstSettleSweeps = 4, kSettleSweeps = 8;
+constexpr int kFirstSettleSweeps = 4, kSettleSweeps = 2;
 
 std::vector<Material> materials_of(const TissueImage& image, const DeformOptions& options) {
   std::vector<Material> materials(image.labels.size(), options.default_material);

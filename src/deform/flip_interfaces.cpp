@@ -148,7 +148,8 @@ bool Flipper::visit(VertexId a, VertexId b) {
 
 }  // namespace
 
-std::size_t flip_interfaces(MeshEditor& mesh, const SurfaceField& field, const ShapeBounds& bounds, const Stage& stage) {
+std::size_t flip_interfaces(MeshEditor& mesh, const SurfaceField& field, const ShapeBounds& bounds,
+                            const Stage& stage) {
   constexpr VertexId kPerCheck = 1 << 14;
   Flipper flipper(mesh, field, bounds);
   std::vector<VertexId> neighbours;

@@ -117,13 +117,19 @@ void Improver::coarsen_interfaces() {
 void Improver::coarsen_inside() {
   MeshEditor editor(mesh_);
   if (!options_.size_mm.empty()) report_.splits += split_long_edges(editor, bounds_, options_.size_mm, stage_);
+  std::uint32_t tried = 0;
+  const auto improve_changed = [&] {
+    const std::uint32_t now = editor.clock() + 1;
+    report_.shape_changes += improve_shapes(editor, bounds_, kEnoughSlack, stage_, tried);
+    tried = now;
+  };
   for (int n = 0; n < 2; ++n) {
     coarsen_within(editor, 0, 0);
-    report_.shape_changes += improve_shapes(editor, bounds_, kEnoughSlack, stage_);
+    improve_changed();
   }
   for (int n = 0; n < 2; ++n) {
     report_.shape_changes += slide_vertices(editor, field_, bounds_, kSlidingSlack, stage_);
-    report_.shape_changes += improve_shapes(editor, bounds_, kEnoughSlack, stage_);
+    improve_changed();
   }
   mesh_ = editor.result();
 }

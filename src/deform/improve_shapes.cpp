@@ -33,11 +33,12 @@ class ShapeImprover {
   bool remove_face(TetId t, std::size_t opposite);
   bool move_vertex(VertexId v);
 
-  double worst_at(Vec3 p, double enough) const;
+  double worst_at(Vec3 p, double enough);
 
   MeshEditor& mesh_;
   const ShapeBounds& bounds_;
   VertexStar star_;
+  std::size_t culprit_ = 0;  // the tetrahedron of the star that was the worst at the last place tried
   EdgeRing ring_;
   RingFilling filling_;
   std::vector<Tet> fresh_;
@@ -81,14 +82,23 @@ bool ShapeImprover::remove_face(TetId t, std::size_t opposite) {
   return true;
 }
 
-// Of the star's tetrahedra with its centre at p; gives up below `enough`.
-double ShapeImprover::worst_at(Vec3 p, double enough) const {
-  double worst = 1;
-  for (const auto& tet : star_.tets()) {
+// Of the star's tetrahedra with its centre at p; gives up below `enough`. Begins with the last one that was the worst:
+// most places are turned down for it.
+double ShapeImprover::worst_at(Vec3 p, double enough) {
+  const auto slack_with = [&](std::size_t tet) {
     std::array<Vec3, 4> c;
-    for (std::size_t n = 0; n < 4; ++n) c[n] = tet.corners[n] == 0 ? p : star_.points()[tet.corners[n]];
-    worst = std::min(worst, slack(bounds_, c[0], c[1], c[2], c[3]));
-    if (worst < enough) break;
+    for (std::size_t n = 0; n < 4; ++n) {
+      const auto corner = star_.tets()[tet].corners[n];
+      c[n] = corner == 0 ? p : star_.points()[corner];
+    }
+    return slack(bounds_, c[0], c[1], c[2], c[3]);
+  };
+  double worst = slack_with(culprit_);
+  for (std::size_t tet = 0; tet < star_.tets().size() && worst >= enough; ++tet) {
+    const double s = slack_with(tet);
+    if (s >= worst) continue;
+    worst = s;
+    culprit_ = tet;
   }
   return worst;
 }
@@ -97,6 +107,7 @@ double ShapeImprover::worst_at(Vec3 p, double enough) const {
 bool ShapeImprover::move_vertex(VertexId v) {
   if (mesh_.tissues_at(v) != 1 || mesh_.is_outer(v)) return false;
   star_.gather(v);
+  culprit_ = 0;
   Vec3 at = star_.points()[0], mean;
   double shortest2 = norm_squared(star_.points()[1] - at);
   for (std::size_t n = 1; n < star_.points().size(); ++n) {
@@ -143,13 +154,16 @@ bool ShapeImprover::visit(TetId t) {
 
 }  // namespace
 
-std::size_t improve_shapes(MeshEditor& mesh, const ShapeBounds& bounds, double enough, const Stage& stage) {
+std::size_t improve_shapes(MeshEditor& mesh, const ShapeBounds& bounds, double enough, const Stage& stage,
+                           std::uint32_t since) {
   constexpr TetId kPerCheck = 1 << 14;
   ShapeImprover improver(mesh, bounds);
   std::size_t changes = 0;
   for (TetId t = 0; t < mesh.tet_count(); ++t) {
     if (t % kPerCheck == 0) stage.check_cancelled();
-    if (!mesh.is_alive(t) || mesh.tissue(t) == 0 || improver.slack_of(mesh.tet(t)) >= enough) continue;
+    if (!mesh.is_alive(t) || mesh.tissue(t) == 0) continue;
+    const bool is_due = std::ranges::any_of(mesh.tet(t), [&](VertexId v) { return mesh.changed_at(v) >= since; });
+    if (!is_due || improver.slack_of(mesh.tet(t)) >= enough) continue;
     changes += improver.visit(t);
   }
   return changes;

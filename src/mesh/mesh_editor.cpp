@@ -19,6 +19,7 @@ MeshEditor::MeshEditor(const TissueMesh& mesh) : mesh_(mesh) {
   tissue_tets_ = static_cast<std::size_t>(std::ranges::count_if(mesh_.tissues, [](TissueId t) { return t != 0; }));
   tissues_at_.resize(stars_.size());
   is_outer_.resize(stars_.size());
+  changed_at_.assign(stars_.size(), 0);
   parallel_for(stars_.size(), [&](std::size_t v) {
     tissues_at_[v] = count_tissues(static_cast<VertexId>(v));
     is_outer_[v] = lies_on_bare_face(static_cast<VertexId>(v));
@@ -106,14 +107,28 @@ void MeshEditor::add(const std::array<VertexId, 4>& tet, TissueId tissue) {
     mesh_.tets[t] = tet;
     mesh_.tissues[t] = tissue;
   }
-  for (const VertexId v : tet) attach(v, t);
+  ++clock_;
+  for (const VertexId v : tet) {
+    attach(v, t);
+    changed_at_[v] = clock_;
+  }
   if (tissue != 0) ++tissue_tets_;
 }
 
+void MeshEditor::move(VertexId v, Vec3 p) {
+  mesh_.points_mm[v] = p;
+  ++clock_;
+  for (const TetId t : tets_at(v)) {
+    for (const VertexId w : mesh_.tets[t]) changed_at_[w] = clock_;
+  }
+}
+
 void MeshEditor::collapse(VertexId v, VertexId w) {
+  ++clock_;
   while (stars_[v].count > 0) {
     const TetId t = incident_[stars_[v].begin + stars_[v].count - 1];
     auto& tet = mesh_.tets[t];
+    for (const VertexId x : tet) changed_at_[x] = clock_;
     if (std::ranges::find(tet, w) != tet.end()) {
       kill(t);
       continue;
@@ -150,6 +165,7 @@ VertexId MeshEditor::add_vertex(Vec3 p) {
   stars_.emplace_back();
   tissues_at_.push_back(0);
   is_outer_.push_back(0);
+  changed_at_.push_back(clock_);
   return static_cast<VertexId>(stars_.size() - 1);
 }
 

@@ -39,7 +39,12 @@ class MeshEditor {
   /// Whether v lies on a face of one tetrahedron only: the far side of the cushion.
   bool is_outer(VertexId v) const { return is_outer_[v] != 0; }
 
-  void move(VertexId v, Vec3 p) { mesh_.points_mm[v] = p; }
+  /// Number of changes so far.
+  std::uint32_t clock() const { return clock_; }
+  /// The clock at the last change of a tetrahedron at v; 0: none yet.
+  std::uint32_t changed_at(VertexId v) const { return changed_at_[v]; }
+
+  void move(VertexId v, Vec3 p);
 
   /// Merges v into w, which share an edge: the tetrahedra at that edge die, the others at v have w in its place.
   void collapse(VertexId v, VertexId w);
@@ -71,6 +76,8 @@ class MeshEditor {
   std::vector<TetId> free_;
   std::vector<std::uint8_t> tissues_at_;
   std::vector<std::uint8_t> is_outer_;
+  std::vector<std::uint32_t> changed_at_;
+  std::uint32_t clock_ = 0;
   std::size_t tissue_tets_ = 0;
 };
 

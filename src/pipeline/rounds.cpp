@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "anatomesh/errors.h"
-
 #include "deform/deform.h"
 
 namespace anatomesh {
@@ -17,9 +16,10 @@ constexpr double kFirstShare = 0.75;
 // A round that leaves more than this share of what was lacking is the last: what is left is not to be had.
 constexpr double kWorthwhile = 0.9;
 constexpr int kMaxRounds = 12;
-// Times that a mesh may lose its fidelity to the last steps of its deformation; more is asked for then.
+// The last steps of the deformation may take a little fidelity, so a little more is asked for before; where it was not
+// enough, more, so many times.
 constexpr int kMaxRetries = 2;
-constexpr double kReserve = 0.002;
+constexpr double kReserve = 0.004;
 // Of the tetrahedra of a lattice about this share is left when the mesh is finished.
 constexpr double kShareLeft = 0.5;
 constexpr double kTetsPerLeaf = 10;  // that its refinement adds, with what must follow
@@ -52,7 +52,7 @@ class Rounds {
       : image_(image),
         options_(options.lattice),
         wanted_(plan.fidelity),
-        aim_(plan.fidelity),
+        aim_(with_reserve(plan.fidelity)),
         first_plan_(first_plan(plan, options.lattice)),
         stage_(stage),
         stage_done_(stage_done),
@@ -64,6 +64,10 @@ class Rounds {
   DeformedMesh run();
 
  private:
+  static std::vector<double> with_reserve(std::vector<double> wanted) {
+    for (double& f : wanted) f = std::min(1.0, f + kReserve);
+    return wanted;
+  }
   static LatticePlan first_plan(LatticePlan plan, const LatticeOptions& options) {
     if (options.fidelity_stage == FidelityStage::final) {
       for (double& f : plan.fidelity) f *= kFirstShare;
