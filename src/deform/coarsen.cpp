@@ -97,14 +97,17 @@ bool Coarsener::list_candidates() {
 }
 
 bool Coarsener::keeps_sizes(Local w) const {
-  if (limits_.size_mm.empty() && limits_.size_at.empty()) return true;
+  if (limits_.sizes == nullptr && limits_.size_at.empty()) return true;
   const Vec3 at = star_.points()[w];
   for (const auto& tet : star_.tets()) {
     if (tet.tissue == 0 || tet.has(w)) continue;
     for (const Local x : tet.corners) {
       if (x == 0) continue;
       const double length2 = norm_squared(star_.points()[x] - at);
-      if (!limits_.size_mm.empty() && length2 > limits_.size_mm[tet.tissue] * limits_.size_mm[tet.tissue]) return false;
+      if (limits_.sizes != nullptr) {
+        const double size = limits_.sizes->at(tet.tissue, 0.5 * (star_.points()[x] + at));
+        if (length2 > size * size) return false;
+      }
       if (limits_.size_at.empty()) continue;
       const double size = 0.5 * (limits_.size_at[star_.vertices()[x]] + limits_.size_at[star_.vertices()[w]]);
       if (length2 > size * size) return false;

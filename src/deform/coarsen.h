@@ -6,6 +6,7 @@
 
 #include "base/stage.h"
 #include "boundary/surface_field.h"
+#include "image/size_field.h"
 #include "mesh/mesh_editor.h"
 #include "mesh/tet_shape.h"
 
@@ -13,12 +14,12 @@ namespace anatomesh {
 
 /// What a collapse must keep.
 struct CoarsenLimits {
-  ShapeBounds bounds;               ///< of the new tetrahedra
-  double surface_tolerance_mm = 0;  ///< how far interfaces may move, and lie from the boundary; 0: they stay
-  double max_turn_cos = 0.9;        ///< cosine of the largest angle by which an interface face may turn
-  std::vector<double> size_mm;      ///< by tissue: no edge longer than this is made; empty: no limit
-  std::vector<double> size_at;      ///< by vertex: the same around it, the mean of both ends; empty: no limit
-  std::size_t target_tets = 0;      ///< stop when there are no more, without the cushion
+  ShapeBounds bounds;                ///< of the new tetrahedra
+  double surface_tolerance_mm = 0;   ///< how far interfaces may move, and lie from the boundary; 0: they stay
+  double max_turn_cos = 0.9;         ///< cosine of the largest angle by which an interface face may turn
+  const SizeField* sizes = nullptr;  ///< no edge longer than this is made; null: no limit
+  std::vector<double> size_at;       ///< by vertex: the same around it, the mean of both ends; empty: no limit
+  std::size_t target_tets = 0;       ///< stop when there are no more, without the cushion
 };
 
 /// Collapses each vertex, in the order of their numbers, onto the neighbour that keeps the worst of the new tetrahedra

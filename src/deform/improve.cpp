@@ -82,7 +82,7 @@ void Improver::coarsen_within(MeshEditor& editor, double surface_tolerance_mm, d
   CoarsenLimits limits;
   limits.bounds = tightened(bounds_, margin_deg);
   limits.surface_tolerance_mm = surface_tolerance_mm;
-  limits.size_mm = options_.size_mm;
+  limits.sizes = options_.sizes;
   limits.target_tets = options_.target_tets;
   if (std::isfinite(options_.gradation)) limits.size_at = graded_sizes(editor, options_.gradation);
   report_.collapses += coarsen(editor, field_, limits, kRounds, stage_);
@@ -116,7 +116,7 @@ void Improver::coarsen_interfaces() {
 
 void Improver::coarsen_inside() {
   MeshEditor editor(mesh_);
-  if (!options_.size_mm.empty()) report_.splits += split_long_edges(editor, bounds_, options_.size_mm, stage_);
+  if (options_.sizes != nullptr) report_.splits += split_long_edges(editor, bounds_, *options_.sizes, stage_);
   std::uint32_t tried = 0;
   const auto improve_changed = [&] {
     const std::uint32_t now = editor.clock() + 1;

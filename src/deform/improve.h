@@ -7,6 +7,7 @@
 
 #include "base/stage.h"
 #include "boundary/surface_field.h"
+#include "image/size_field.h"
 #include "mesh/tet_shape.h"
 #include "mesh/tissue_mesh.h"
 
@@ -15,7 +16,7 @@ namespace anatomesh {
 /// What may change, and what the elements' sizes should be.
 struct ImproveOptions {
   double surface_tolerance_mm = 0;  ///< how far interfaces may move to save elements, >= 0; 0: they keep their vertices
-  std::vector<double> size_mm;      ///< by tissue: the longest edge wanted, > 0; empty: no limit
+  const SizeField* sizes = nullptr;  ///< the longest edges wanted; null: no limit
   /// How much longer edges may be, a mm farther from the interfaces (mm), >= 0.
   double gradation = std::numeric_limits<double>::infinity();
   /// Tetrahedra wanted, without the cushion: where there are more, interfaces may move farther than the tolerance, the

@@ -43,14 +43,14 @@ struct LongEdge {
   bool operator==(const LongEdge&) const = default;
 };
 
-std::vector<LongEdge> find_long_edges(const MeshEditor& mesh, std::span<const double> size_mm) {
+std::vector<LongEdge> find_long_edges(const MeshEditor& mesh, const SizeField& sizes) {
   std::vector<LongEdge> edges;
   for (TetId t = 0; t < mesh.tet_count(); ++t) {
     if (!mesh.is_alive(t) || mesh.tissue(t) == 0) continue;
     const auto& tet = mesh.tet(t);
-    const double size = size_mm[mesh.tissue(t)];
     for (const auto& [i, j] : kEdges) {
-      const double length2 = norm_squared(mesh.point(tet[i]) - mesh.point(tet[j]));
+      const Vec3 a = mesh.point(tet[i]), b = mesh.point(tet[j]);
+      const double length2 = norm_squared(a - b), size = sizes.at(mesh.tissue(t), 0.5 * (a + b));
       if (length2 > size * size) edges.push_back({length2, std::min(tet[i], tet[j]), std::max(tet[i], tet[j])});
     }
   }
@@ -97,13 +97,12 @@ std::vector<double> graded_sizes(const MeshEditor& mesh, double gradation) {
   return sizes;
 }
 
-std::size_t split_long_edges(MeshEditor& mesh, const ShapeBounds& bounds, std::span<const double> size_mm,
-                             const Stage& stage) {
+std::size_t split_long_edges(MeshEditor& mesh, const ShapeBounds& bounds, const SizeField& sizes, const Stage& stage) {
   std::size_t splits = 0;
   for (bool changed = true; changed;) {
     stage.check_cancelled();
     changed = false;
-    for (const LongEdge& edge : find_long_edges(mesh, size_mm)) {
+    for (const LongEdge& edge : find_long_edges(mesh, sizes)) {
       const Vec3 middle = 0.5 * (mesh.point(edge.low) + mesh.point(edge.high));
       if (!halves_fit(mesh, edge, middle, bounds)) continue;
       mesh.split(edge.low, edge.high, middle);

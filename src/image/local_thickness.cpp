@@ -13,6 +13,8 @@
 namespace anatomesh {
 namespace {
 
+constexpr int kStepVoxels = 2;
+
 // One line of voxels along an axis.
 struct Line {
   std::size_t first, stride;
@@ -123,6 +125,37 @@ double half_steps_to_axis(const TissueImage& image, const std::vector<float>& di
   return most;
 }
 
+// The largest thickness at the voxel and its neighbours in the same tissue.
+float thickest_around(const TissueImage& image, const std::vector<float>& thickness, std::array<int, 3> at) {
+  const TissueId tissue = image.at(at[0], at[1], at[2]);
+  float most = 0;
+  for (int k = -1; k <= 1; ++k) {
+    for (int j = -1; j <= 1; ++j) {
+      for (int i = -1; i <= 1; ++i) {
+        const std::size_t voxel = image.offset(at[0] + i, at[1] + j, at[2] + k);
+        if (image.voxels[voxel] == tissue) most = std::max(most, thickness[voxel]);
+      }
+    }
+  }
+  return most;
+}
+
+void for_each_tissue_voxel(const TissueImage& image, const std::stop_token& cancel,
+                           const std::function<void(std::array<int, 3>)>& visit) {
+  parallel_for(
+      static_cast<std::size_t>(image.size[2]),
+      [&](std::size_t slice) {
+        if (cancel.stop_requested()) throw Cancelled();
+        const int k = static_cast<int>(slice);
+        for (int j = 0; j < image.size[1]; ++j) {
+          for (int i = 0; i < image.size[0]; ++i) {
+            if (image.at(i, j, k) != 0) visit({i, j, k});
+          }
+        }
+      },
+      1);
+}
+
 }  // namespace
 
 std::vector<float> distance_to_tissue_faces(const TissueImage& image, double cap_mm, const std::stop_token& cancel) {
@@ -149,24 +182,25 @@ std::vector<float> local_thickness(const TissueImage& image, double cap_mm, cons
     while (seen < diameter && !at.compare_exchange_weak(seen, diameter, std::memory_order_relaxed)) {
     }
   };
-  parallel_for(
-      static_cast<std::size_t>(image.size[2]),
-      [&](std::size_t slice) {
-        if (cancel.stop_requested()) throw Cancelled();
-        const int k = static_cast<int>(slice);
-        for (int j = 0; j < image.size[1]; ++j) {
-          for (int i = 0; i < image.size[0]; ++i) {
-            const float d = distance[image.offset(i, j, k)];
-            if (image.at(i, j, k) == 0 || !is_ridge(image, distance, {i, j, k}, cap)) continue;
-            const auto diameter = static_cast<float>(2 * (d + half_steps_to_axis(image, distance, {i, j, k})));
-            for_each_in_ball(image, {i, j, k}, d, [&](std::size_t voxel) { raise(voxel, diameter); });
-          }
-        }
-      },
-      1);
+  for_each_tissue_voxel(image, cancel, [&](std::array<int, 3> at) {
+    const std::size_t own = image.offset(at[0], at[1], at[2]);
+    const float d = distance[own];
+    raise(own, 2 * d);
+    if (!is_ridge(image, distance, at, cap)) return;
+    const auto diameter = static_cast<float>(2 * (d + half_steps_to_axis(image, distance, at)));
+    for_each_in_ball(image, at, d, [&](std::size_t voxel) { raise(voxel, diameter); });
+  });
   for (std::size_t v = 0; v < thickness.size(); ++v) {
     const bool thick = image.voxels[v] == 0 || distance[v] >= cap || thickness[v] >= 2 * cap;
     if (thick) thickness[v] = std::numeric_limits<float>::infinity();
+  }
+  // The steps of a surface of voxels stick out of the balls, and are no thin part.
+  std::vector<float> smooth = thickness;
+  for (int pass = 0; pass < kStepVoxels; ++pass) {
+    for_each_tissue_voxel(image, cancel, [&](std::array<int, 3> at) {
+      smooth[image.offset(at[0], at[1], at[2])] = thickest_around(image, thickness, at);
+    });
+    thickness = smooth;
   }
   return thickness;
 }

@@ -14,7 +14,8 @@ namespace anatomesh {
 std::vector<float> distance_to_tissue_faces(const TissueImage& image, double cap_mm, const std::stop_token& cancel);
 
 /// Diameter (mm) of the largest ball inside its tissue that holds the voxel's centre (Hildebrand and Rüegsegger 1997),
-/// infinite above cap_mm and in the background. Cost: as above and a few nanoseconds for each voxel of each
+/// infinite above cap_mm and in the background; then the largest within two voxels, so that the steps of a surface of
+/// voxels do not count as thin. Cost: as above and a few nanoseconds for each voxel of each
 /// ball about a voxel on the tissue's medial axis. Throws Cancelled.
 std::vector<float> local_thickness(const TissueImage& image, double cap_mm, const std::stop_token& cancel);
 

@@ -98,6 +98,7 @@ class LabelLattice::Impl {
   std::vector<Fidelity> inherited_fidelity() const;
   std::vector<Fidelity> fidelity() const;
   std::vector<Demand> demands() const;
+  bool is_too_large(TetRef leaf) const;
   bool wants_refinement(TetRef leaf, const std::vector<Demand>& demands) const;
   template <class Visit>
   void visit_parts(const LabelledLeaf& leaf, const Visit& visit) const;
@@ -177,9 +178,21 @@ std::vector<Demand> LabelLattice::Impl::demands() const {
   return demands;
 }
 
+bool LabelLattice::Impl::is_too_large(TetRef leaf) const {
+  if (plan_.sizes == nullptr || leaf.level >= deepest_) return false;
+  const double edge = std::ldexp(plan_.bcc_size_mm, -leaf.level);
+  const auto voxels = votes_.voxels(leaf);
+  if (std::ranges::any_of(voxels, [&](std::uint32_t v) { return edge > plan_.sizes->at_voxel(v); })) return true;
+  const LatticePoint b = lattice_.barycentre(leaf);
+  const double unit = std::ldexp(place_.unit_mm, -leaf.level);
+  const Vec3 middle = place_.origin_mm + Vec3{unit * b[0], unit * b[1], unit * b[2]};
+  return edge > plan_.sizes->at(votes_.vote(leaf).tissue, middle);
+}
+
 // A leaf is refined when the boundary of a tissue that falls short passes between its voxels, or when it holds
 // a voxel of a tissue that no tetrahedron has taken yet or that is too thin to show between voxel centres.
 bool LabelLattice::Impl::wants_refinement(TetRef leaf, const std::vector<Demand>& demands) const {
+  if (is_too_large(leaf)) return true;
   const auto voxels = votes_.voxels(leaf);
   if (voxels.empty()) return false;
   const TissueId first = image_.voxels[voxels[0]];

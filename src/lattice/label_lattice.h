@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/stage.h"
+#include "image/size_field.h"
 #include "image/tissue_image.h"
 #include "mesh/tissue_mesh.h"
 
@@ -16,10 +17,12 @@ namespace anatomesh {
 
 /// What the lattice is asked for; sizes are in millimetres.
 struct LatticePlan {
-  double bcc_size_mm = 8;           ///< spacing of the coarsest lattice
-  int levels = 2;                   ///< red refinements that fidelity may ask for: smallest spacing bcc_size / 2^levels
-  int extra_levels = 3;             ///< further ones for a tissue that would have no tetrahedron at all
-  std::vector<double> fidelity;     ///< F by tissue, [0] unused
+  double bcc_size_mm = 8;        ///< spacing of the coarsest lattice
+  int levels = 2;                ///< red refinements that fidelity may ask for: smallest spacing bcc_size / 2^levels
+  int extra_levels = 3;          ///< further ones for a tissue that would have no tetrahedron at all
+  std::vector<double> fidelity;  ///< F by tissue, [0] unused
+  const SizeField* sizes =
+      nullptr;                      ///< tetrahedra with longer edges are refined; null: none are. Must outlive the plan
   bool allow_non_manifold = false;  ///< leaves the tissues' surfaces as the labels make them
 };
 

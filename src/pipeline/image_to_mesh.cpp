@@ -44,6 +44,24 @@ class Stopwatch {
   Clock::time_point start_ = Clock::now();
 };
 
+// Number of a tissue that is in the image.
+std::size_t tissue_of(const TissueImage& image, Label label) {
+  return static_cast<std::size_t>(std::ranges::lower_bound(image.labels, label) - image.labels.begin());
+}
+
+// No edge has to be shorter than a voxel. A tissue is followed where it is thinner than so many of the coarsest tetrahedra are wide.
+SizeField make_sizes(const TissueImage& image, const LatticeOptions& options, const Stage& stage) {
+  SizeField sizes{image, {}, {}};
+  if (!options.size_label.empty()) sizes.of_tissue_mm.assign(image.labels.size(), kNoSize);
+  for (const auto& [label, size] : options.size_label) sizes.of_tissue_mm[tissue_of(image, label)] = size;
+  if (options.elements_across == 0) return sizes;
+  const double across = options.elements_across;
+  sizes.of_voxel_mm = local_thickness(image, across * options.bcc_size_mm, stage.cancel_token());
+  const double voxel = std::min({image.spacing_mm.x, image.spacing_mm.y, image.spacing_mm.z});
+  for (float& size : sizes.of_voxel_mm) size = static_cast<float>(std::max(size / across, voxel));
+  return sizes;
+}
+
 LatticePlan make_plan(const TissueImage& image, const LatticeOptions& options) {
   LatticePlan plan;
   plan.bcc_size_mm = options.bcc_size_mm;
@@ -57,8 +75,7 @@ LatticePlan make_plan(const TissueImage& image, const LatticeOptions& options) {
   plan.allow_non_manifold = options.allow_non_manifold;
   plan.fidelity.assign(image.labels.size(), options.fidelity);
   for (const auto& [label, fidelity] : options.fidelity_label) {
-    const auto at = std::lower_bound(image.labels.begin(), image.labels.end(), label);
-    plan.fidelity[static_cast<std::size_t>(at - image.labels.begin())] = fidelity;
+    plan.fidelity[tissue_of(image, label)] = fidelity;
   }
   return plan;
 }
@@ -179,7 +196,9 @@ Result image_to_mesh(const LabelImage& image, const Options& options, const Prog
   describe_islands(drop_islands(tissues, options.lattice.drop_islands), tissues, result.warnings);
   watch.stage_done("labels");
 
-  const LatticePlan plan = make_plan(tissues, result.options.lattice);
+  LatticePlan plan = make_plan(tissues, result.options.lattice);
+  const SizeField sizes = make_sizes(tissues, result.options.lattice, reading);
+  if (!sizes.empty()) plan.sizes = &sizes;
   const DeformedMesh deformed = refine_and_deform(tissues, plan, result.options, Stage(progress, "lattice", 0.05, 0.95),
                                                   [&](std::string name) { watch.stage_done(std::move(name)); });
 

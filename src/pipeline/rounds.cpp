@@ -58,6 +58,7 @@ class Rounds {
         stage_done_(stage_done),
         builder_(image, first_plan_),
         deformer_(image, options.deform, stage) {
+    improvement_.sizes = plan.sizes;
     improvement_.gradation = options.deform.gradation > 0 ? options.deform.gradation : improvement_.gradation;
   }
 
@@ -171,7 +172,8 @@ bool Rounds::exceeds_budget(const TissueMesh& mesh) {
 
 // Of a mesh with its elements thinned out, and the last that had few enough by itself, the more faithful one.
 DeformedMesh Rounds::within_budget(TissueMesh mesh) {
-  DeformedMesh thinned = finish(std::move(mesh), options_.max_elements);
+  // The last flips may add a few.
+  DeformedMesh thinned = finish(std::move(mesh), options_.max_elements - options_.max_elements / 100);
   const std::size_t tets = tissue_tets(thinned.mesh);
   const bool fits = tets <= options_.max_elements;
   if (best_ && (!fits || mean_reached(best_->final.tissues) > mean_reached(thinned.final.tissues)))

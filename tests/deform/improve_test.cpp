@@ -159,7 +159,8 @@ TEST(Coarsen, MakesNoLongEdges) {
   MeshEditor editor(c.mesh);
   CoarsenLimits limits;
   limits.bounds = kBounds;
-  limits.size_mm = {100, before, 100, 100};
+  const SizeField sizes{c.field.image(), {100, before, 100, 100}, {}};
+  limits.sizes = &sizes;
   coarsen(editor, c.field, limits, 10, testing::quiet_stage());
   EXPECT_LE(longest_edge(editor.result(), 1), before);
   c.coarsen(0);
@@ -258,8 +259,8 @@ TEST(SplitLongEdges, GetsThemShorter) {
   Case c(testing::sphere(12));
   const double before = longest_edge(c.mesh, 1);
   MeshEditor editor(c.mesh);
-  const std::vector<double> size_mm = {100, 0.6 * before};
-  EXPECT_GT(split_long_edges(editor, ShapeBounds::from_degrees(10, 170, 0.2), size_mm, testing::quiet_stage()), 0u);
+  const SizeField sizes{c.field.image(), {100, 0.6 * before}, {}};
+  EXPECT_GT(split_long_edges(editor, ShapeBounds::from_degrees(10, 170, 0.2), sizes, testing::quiet_stage()), 0u);
   const TissueMesh after = editor.result();
   EXPECT_LE(longest_edge(after, 1), 0.6 * before);
   expect_same_topology(after, c.mesh);
