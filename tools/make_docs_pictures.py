@@ -86,7 +86,7 @@ PICTURES = [
             "The same fidelity asked of the undeformed lattice, as in the paper, and of the final mesh."),
     Picture("stage-vessels", "vessels", "surface", ("--fidelity-stage lattice", ""),
             "The same for the vessels."),
-    Picture("budget-brain", "brain", "cut", ("--max-elements 30000", "--max-elements 50000", ""),
+    Picture("budget-brain", "brain", "cut", ("--max-elements 50000", "--max-elements 80000", ""),
             "The best mesh within a budget of elements, and the mesh without one."),
     Picture("budget-vessels", "vessels", "surface", ("--max-elements 24000", "--max-elements 32000", ""),
             "A budget spends its elements where most voxels are wrong."),
