@@ -87,7 +87,7 @@ PICTURES = [
     Picture("stage-vessels", "vessels", "surface", ("--fidelity-stage lattice", ""),
             "The same for the vessels."),
     Picture("budget-brain", "brain", "cut", ("--max-elements 50000", "--max-elements 80000", ""),
-            "The best mesh within a budget of elements, and the mesh without one."),
+            "The best mesh found within a budget of elements, and the mesh without one."),
     Picture("budget-vessels", "vessels", "surface", ("--max-elements 24000", "--max-elements 32000", ""),
             "A budget spends its elements where most voxels are wrong."),
     Picture("sizes-brain", "brain", "cut", ("--bcc-size 48 --min-size 12", "--bcc-size 48 --min-size 6", ""),
