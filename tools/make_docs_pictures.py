@@ -94,7 +94,7 @@ PICTURES = [
             "`--bcc-size` is the size of the coarsest elements before collapses, `--min-size` that of the smallest at the tissues' borders."),
     Picture("sizes-vessels", "vessels", "surface", ("--min-size 2.4", "--min-size 1.2", ""),
             "A vessel needs elements smaller than it is thick."),
-    Picture("size-label-vessels", "vessels", "cut", ("", "--size-label 2=1", "--size-label 1=5"),
+    Picture("size-label-vessels", "vessels", "cut", ("", "--size-label 2=1.5", "--size-label 1=5"),
             "The longest edge, in mm, inside one tissue: nothing asked, the vessels', the block's."),
     Picture("across-vessels", "vessels", "near", ("", "--elements-across 2", "--elements-across 3"),
             "Elements across the local thickness of the vessels: nothing asked, two and three."),
