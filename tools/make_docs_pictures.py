@@ -3,8 +3,8 @@
 
 usage: make_docs_pictures.py [--program PATH] [--only NAME ...] [--keep FOLDER] [--list]
 
-A brain (AAL, Debian's mricron-data, every second voxel) and a vessel tree (tools/make_vessel_tree.py) are meshed once for each set of options
-in the table below. A picture whose options the program does not know yet is left out, with a message. Needs
+A brain (AAL, Debian's mricron-data, by lobes, every third voxel) and a vessel tree (tools/make_vessel_tree.py) are meshed once for each set
+of options in the table below. A picture whose options the program does not know yet is left out, with a message. Needs
 python3-vtk9, python3-matplotlib, python3-nibabel and python3-pil, and a display or xvfb-run. --keep holds the meshes
 of an earlier run of the same program, so that only the pictures are drawn again.
 """
@@ -56,9 +56,8 @@ class View(typing.NamedTuple):
 
 
 VIEWS = {
-    "brain": {"surface": View("surface", (45, 54, 44), 46, (1.0, -0.35, 0.25)),
-              "cut": View("cut", (50, 54, 42), 20),
-              "slice": View("slice", (55, 54, 38), 17)},
+    "brain": {"cut": View("cut", (34, 36, 28), 26),
+              "slice": View("slice", (37, 36, 25), 15)},
     "vessels": {"surface": View("surface", (53, 53, 56), 59, (0.3, -1.0, 0.2), only=VESSEL),
                 "near": View("surface", (53, 53, 36), 20, (0.3, -1.0, 0.2), only=VESSEL),
                 "cut": View("cut", (53, 53, 36), 36),
@@ -75,47 +74,63 @@ class Picture(typing.NamedTuple):
     caption: str
 
 
+# "" are the default options: their mesh is made once.
 PICTURES = [
-    Picture("fidelity-brain", "brain", "slice", ("--fidelity 0.8", "--fidelity 0.95", "--fidelity 0.98"),
-            "Outlines of the mesh over a slice of the image. A higher fidelity takes smaller elements to where tissues meet."),
-    Picture("fidelity-vessels", "vessels", "surface", ("--fidelity 0.8", "--fidelity 0.95", "--fidelity 0.98"),
-            "The vessels alone. What a low fidelity loses first are the thin branches."),
-    Picture("stage-brain", "brain", "slice", ("--fidelity-stage lattice", "--fidelity-stage final"),
-            "The fidelity of the undeformed lattice, as in the paper, and that of the final mesh."),
-    Picture("stage-vessels", "vessels", "surface", ("--fidelity-stage lattice", "--fidelity-stage final"),
-            "The same for the vessels."),
-    Picture("budget-brain", "brain", "cut", ("--max-elements 50000", "--max-elements 100000", ""),
-            "The best mesh within a budget of elements, and the mesh without one."),
-    Picture("budget-vessels", "vessels", "surface", ("--max-elements 30000", "--max-elements 60000", ""),
-            "A budget spends its elements where the fidelity is lowest."),
+    Picture("fidelity-brain", "brain", "slice", ("--fidelity 0.8", "--fidelity 0.9", ""),
+            "Outlines of the mesh over a slice of the image. A higher fidelity takes smaller elements to where the mesh is wrong."),
+    Picture("fidelity-vessels", "vessels", "surface", ("--fidelity 0.8", "", "--fidelity 0.98"),
+            "The vessels alone, at fidelities of 0.8, 0.95 (the default) and 0.98."),
     Picture("label-vessels", "vessels", "cut", ("--fidelity 0.8", "--fidelity 0.8 --fidelity-label 2=0.97"),
             "A coarse mesh of the block, and the same with a fidelity of its own for the vessels."),
-    Picture("sizes-brain", "brain", "cut", ("--bcc-size 32 --min-size 8", "--bcc-size 16 --min-size 4", "--bcc-size 32 --min-size 4"),
-            "`--bcc-size` is the size of the elements deep inside, `--min-size` that of the smallest at the tissues' borders."),
-    Picture("sizes-vessels", "vessels", "surface", ("--min-size 2.4", "--min-size 1.2", "--min-size 0.6"),
+    Picture("stage-brain", "brain", "slice", ("--fidelity-stage lattice", ""),
+            "The same fidelity asked of the undeformed lattice, as in the paper, and of the final mesh."),
+    Picture("stage-vessels", "vessels", "surface", ("--fidelity-stage lattice", ""),
+            "The same for the vessels."),
+    Picture("budget-brain", "brain", "cut", ("--max-elements 50000", "--max-elements 80000", ""),
+            "The best mesh found within a budget of elements, and the mesh without one."),
+    Picture("budget-vessels", "vessels", "surface", ("--max-elements 24000", "--max-elements 32000", ""),
+            "A budget spends its elements where most voxels are wrong."),
+    Picture("sizes-brain", "brain", "cut", ("--bcc-size 48 --min-size 12", "--bcc-size 48 --min-size 6", ""),
+            "`--bcc-size` is the size of the coarsest elements before collapses, `--min-size` that of the smallest at the tissues' borders."),
+    Picture("sizes-vessels", "vessels", "surface", ("--min-size 2.4", "--min-size 1.2", ""),
             "A vessel needs elements smaller than it is thick."),
-    Picture("size-label-vessels", "vessels", "cut", ("--size-label 2=3", "--size-label 2=1.5", "--size-label 1=4"),
-            "The largest edge allowed inside one tissue."),
-    Picture("gradation-vessels", "vessels", "cut", ("--gradation 2", "--gradation 1.4", "--gradation 1.2"),
-            "How fast sizes may grow away from the small elements."),
-    Picture("across-vessels", "vessels", "near", ("--elements-across 0", "--elements-across 2", "--elements-across 4"),
-            "Elements across the thickness of a tissue."),
-    Picture("iterations-brain", "brain", "slice", ("--iterations 0", "--iterations 2", "--iterations 10"),
-            "The lattice, and how the deformation takes it to where the tissues meet."),
-    Picture("iterations-vessels", "vessels", "near", ("--iterations 0", "--iterations 2", "--iterations 10"),
+    Picture("size-label-vessels", "vessels", "cut", ("", "--size-label 2=1.5", "--size-label 1=5"),
+            "The longest edge, in mm, inside one tissue: nothing asked, the vessels', the block's."),
+    Picture("across-vessels", "vessels", "near", ("", "--elements-across 2", "--elements-across 3"),
+            "Elements across the local thickness of the vessels: nothing asked, two and three."),
+    Picture("gradation-vessels", "vessels", "cut", ("", "--gradation 1", "--gradation 0.25"),
+            "By how many mm edges may be longer for each mm farther from the surfaces: no limit, 1 and 0.25."),
+    Picture("iterations-brain", "brain", "slice",
+            ("--fidelity-stage lattice --iterations 0", "--fidelity-stage lattice --iterations 1", "--fidelity-stage lattice"),
+            "A lattice, and how the deformation takes it to where the tissues meet; outlines over a slice of the image."),
+    Picture("iterations-vessels", "vessels", "near",
+            ("--fidelity-stage lattice --iterations 0", "--fidelity-stage lattice --iterations 1", "--fidelity-stage lattice"),
             "The same at the first branchings."),
+    Picture("pattern-vessels", "vessels", "near", ("--non-connectivity none", "", "--non-connectivity vertex"),
+            "Targets of the deformation: all of them, thinned by faces (the default) and by vertices."),
     Picture("angles-vessels", "vessels", "near", ("--min-dihedral 5 --max-dihedral 175", "", "--min-dihedral 25 --max-dihedral 140"),
-            "Stricter bounds on the dihedral angles stop more vertices on their way to a smooth surface."),
-    Picture("pattern-brain", "brain", "slice", ("--non-connectivity none", "--non-connectivity face", "--non-connectivity vertex"),
-            "How densely the targets of the deformation are chosen makes little difference to where surfaces end."),
-    Picture("manifold-brain", "brain", "surface", ("--allow-non-manifold", ""),
+            "Bounds of 5° and 175°, 20° and 150° (the default), 25° and 140°."),
+    Picture("manifold-vessels", "vessels", "surface", ("--allow-non-manifold", ""),
             "Every tissue's surface is made a closed manifold unless that is switched off."),
     Picture("islands-vessels", "vessels", "surface", ("", "--drop-islands 30"),
-            "The specks beside the vessels, and the mesh without parts of fewer voxels."),
+            "The specks beside the vessels, and the mesh without parts of fewer than 30 voxels."),
 ]
 
 
 # Images and meshes
+
+# First and last area of AAL that belong to a lobe or a group of nuclei: frontal, insula, cingulum, hippocampus with amygdala,
+# occipital, temporal, parietal, striatum with pallidum, thalamus, temporal again, cerebellum.
+LOBES = ((1, 28, 1), (29, 30, 2), (31, 36, 3), (37, 42, 4), (43, 54, 5), (55, 56, 6), (57, 70, 7), (71, 76, 8), (77, 78, 9), (79, 90, 6),
+         (91, 116, 10))
+
+
+def lobes(areas):
+    lobe_of_area = np.zeros(256, np.uint8)
+    for first, last, lobe in LOBES:
+        lobe_of_area[first:last + 1] = lobe
+    return lobe_of_area[areas]
+
 
 def inside_filled(voxels):
     """Background with tissue on all six sides, however far, becomes a tissue of its own."""
@@ -128,10 +143,10 @@ def inside_filled(voxels):
 
 
 def write_images(folder):
-    """The two images. The brain has every second voxel of AAL, so of 2 mm, and what AAL leaves out inside as one tissue."""
+    """The two images. The brain has every third voxel of AAL, so of 3 mm, and what AAL leaves out inside as one tissue."""
     voxels, _ = read_image(AAL)
     images = {"brain": folder / "brain.nii.gz", "vessels": folder / "vessels.nii.gz"}
-    write_nifti(images["brain"], inside_filled(voxels[::-2, ::-2, ::2].astype(np.uint8)), 2.0)  # from RAS to LPS
+    write_nifti(images["brain"], inside_filled(lobes(voxels[::-3, ::-3, ::3].astype(np.uint8))), 3.0)  # from RAS to LPS
     write_nifti(images["vessels"], vessel_tree(0.6), 0.6)
     return images
 
@@ -228,12 +243,13 @@ def save_picture(picture, meshes, image, path):
 
 def caption(picture, measured):
     text = f"![{picture.caption}](images/surfaces/{picture.name}.png)\n\n{picture.caption}\n\n"
-    text += "| options | tetrahedra | Dice min / mean | distance mean / 95 % mm | surface angle | dihedral |\n|---|---|---|---|---|---|\n"
+    text += ("| options | tetrahedra | Dice min / mean | distance mean / 95 % mm | surface angle | dihedral | nm edges / vertices |\n"
+             "|---|---|---|---|---|---|---|\n")
     for options, f in zip(picture.options, measured):
         shown = f"`{options}`" if options else "default"
         text += (f"| {shown} | {f['tets']:,} | {f['dice'][0]:.3f} / {f['dice'][1]:.3f} | {f['surface_mm'][0]:.3f} / "
                  f"{f['surface_mm'][1]:.2f} | {f['normal_jump_deg']:.1f}° | {f['dihedral_deg'][0]:.1f}° to "
-                 f"{f['dihedral_deg'][1]:.1f}° |\n")
+                 f"{f['dihedral_deg'][1]:.1f}° | {f['nonmanifold'][0]:,} / {f['nonmanifold'][1]:,} |\n")
     return text
 
 

@@ -19,8 +19,8 @@ struct Material {
   double poisson_ratio = 0.45;     ///< >= 0, < 0.5
 };
 
-/// Where a tissue's fidelity is judged: on the undeformed lattice, as in the paper, or on the final mesh, which takes
-/// far fewer elements for the same F.
+/// Where a tissue's fidelity is judged: on the undeformed lattice, as in the paper, or on the final mesh, which mostly
+/// takes fewer elements for the same F.
 enum class FidelityStage { lattice, final };
 
 /// Stage "lattice": the body-centred cubic lattice and its refinement.
@@ -35,8 +35,8 @@ struct LatticeOptions {
   /// Most tetrahedra of the final mesh; 0: as many as the fidelity takes. The best fidelity that they allow, F at most;
   /// needs fidelity_stage final.
   std::uint64_t max_elements = 0;
-  std::map<Label, double> size_label;  ///< largest edge inside a tissue, mm, > 0
-  /// Tetrahedra across a tissue where it is thin, >= 0: edges are at most its local thickness over this; 0: not asked.
+  std::map<Label, double> size_label;  ///< longest edge inside a tissue where the bounds allow, mm, > 0
+  /// Tetrahedra across a tissue where it is thin, 0 to 16: edges at most its local thickness over this; 0: not asked.
   int elements_across = 0;
   /// Components (26-connected) of fewer voxels than this take the label around them; 0: none. They are named in the
   /// result's warnings.
@@ -45,14 +45,14 @@ struct LatticeOptions {
   bool allow_non_manifold = false;
 };
 
-/// Stage "deform": registration onto the boundary, angle guard, settling.
+/// Stage "deform": registration onto the boundary, angle guard, settling, improvement.
 struct DeformOptions {
   NonConnectivity non_connectivity = NonConnectivity::face;
-  int iterations = 10;            ///< >= 0; 0 keeps the lattice
+  int iterations = 10;            ///< 0 to 1000, of the registration at most; 0 keeps the lattice
   double min_dihedral_deg = 20;   ///< 0 to 30
   double max_dihedral_deg = 150;  ///< 117 to 180
   double min_mean_ratio = 0.3;    ///< 0 to 0.5; 12 (3 V)^(2/3) / sum of squared edges, 1: regular
-  double gradation = 0;           ///< mm that edges may be longer a mm farther from the interfaces, > 0; 0: no limit
+  double gradation = 0;           ///< mm that edges may be longer a mm farther from the interfaces, >= 0; 0: no limit
   std::map<Label, Material> material;  ///< of single tissues; the rest takes default_material
   Material default_material;
 };
