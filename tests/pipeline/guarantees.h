@@ -1,7 +1,6 @@
 // What every mesh must keep (docs/design.md, "Guarantees"), checked by brute force on the result alone.
 #pragma once
 
-#include "anatomesh/assess.h"
 #include "anatomesh/image_to_mesh.h"
 
 namespace anatomesh::testing {
@@ -18,16 +17,19 @@ void expect_complete(const LabelImage& image, const Result& result);
 /// Most of each tissue's volume lies, in physical space, within a voxel of a voxel with its label.
 void expect_in_place(const LabelImage& image, const Result& result);
 
-/// F1 and F2 of every tissue are what assess() measures, and at least the F asked for, or the result names the tissue.
-void expect_faithful(const Result& result, const Assessment& assessment);
+/// What the result says of the tissues' fidelity is what assess() measures of its mesh.
+void expect_fidelity_as_measured(const LabelImage& image, const Result& result);
 
-/// No tissue's surface has an edge or vertex that is not manifold.
-void expect_manifold(const Assessment& assessment);
+/// Every tissue has the fidelity asked for.
+void expect_faithful(const Result& result);
+
+/// No tissue's surface has an edge or vertex at which it is not manifold.
+void expect_manifold(const Result& result);
 
 /// Every tissue of more than 50 voxels has as many components in the mesh as in the image (26-connected).
-void expect_components(const Assessment& assessment);
+void expect_components(const LabelImage& image, const Result& result);
 
-/// All of the above, except that a tissue may fall short of its fidelity.
+/// All of the above, except that a tissue may have less than the fidelity asked for as long as the result says so.
 void expect_guarantees(const LabelImage& image, const Result& result);
 
 /// Centres of voxels, as positions in LabelImage::voxels, strictly inside more than one tetrahedron.
