@@ -21,9 +21,9 @@ TEST_P(Cancel, a_running_mesh_command_leaves_no_file) {
   const auto before = folder.files();
   for (const char* name : {"mesh.vtu", "old.vtu"}) {
     // The plain progress lines start with the percentage: from 5 % on the mesher itself is at work.
-    const ProcessResult result = run_program(
-        {"mesh", folder / "image.nrrd", "-o", folder / name, "--bcc-size", "4", "--report", folder / "report.json"},
-        {.interrupt_at = "  5 %", .interrupt_signal = GetParam()});
+    const ProcessResult result = run_program({"mesh", folder / "image.nrrd", "-o", folder / name, "--bcc-size", "4",
+                                              "--max-memory", "16", "--report", folder / "report.json"},
+                                             {.interrupt_at = "  5 %", .interrupt_signal = GetParam()});
     EXPECT_EQ(result.status, 130) << result.err;
     EXPECT_NE(result.err.find("interrupted"), std::string::npos) << result.err;
     EXPECT_EQ(result.out, "");

@@ -25,7 +25,10 @@ DeformOptions strict_bounds() {
 
 TissueMesh deformed(const TissueImage& image) {
   TissueMesh mesh = testing::lattice_of(image);
-  deform(mesh, image, strict_bounds(), testing::quiet_stage());
+  const DeformOptions options = strict_bounds();
+  const Deformer deformer(image, options, testing::quiet_stage());
+  deformer.approach(mesh, testing::quiet_stage());
+  deformer.finish(mesh, {}, testing::quiet_stage());
   return mesh;
 }
 

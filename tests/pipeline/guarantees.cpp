@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "anatomesh/assess.h"
 #include "base/vec.h"
 #include "mesh/mesh_checks.h"
 
@@ -61,6 +62,13 @@ std::map<Label, std::uint64_t> wanted_labels(const LabelImage& image, const Opti
     if (label != 0 && is_chosen) ++wanted[label];
   }
   return wanted;
+}
+
+Assessment assess_quickly(const Result& result, const LabelImage* image) {
+  AssessOptions options;
+  options.frame = result.options.frame;
+  options.distances = false;
+  return assess(result.mesh, image, options);
 }
 
 }  // namespace
@@ -145,11 +153,47 @@ void expect_in_place(const LabelImage& image, const Result& result) {
   for (const auto& [label, total] : volume) EXPECT_GE(near[label], 0.95 * total) << "label " << label;
 }
 
+void expect_fidelity_as_measured(const LabelImage& image, const Result& result) {
+  constexpr double kOnFaces = 0.01;  // voxel centres on faces fall to either side by the rounding of coordinates
+  const Assessment assessment = assess_quickly(result, &image);
+  for (const TissueOutcome& tissue : result.tissues) {
+    const auto measured = std::ranges::find(assessment.tissues, tissue.label, &TissueAssessment::label);
+    ASSERT_NE(measured, assessment.tissues.end()) << tissue.label;
+    EXPECT_NEAR(tissue.f1, measured->fidelity.f1, kOnFaces) << "label " << tissue.label;
+    EXPECT_NEAR(tissue.f2, measured->fidelity.f2, kOnFaces) << "label " << tissue.label;
+  }
+}
+
+void expect_faithful(const Result& result) {
+  for (const TissueOutcome& tissue : result.tissues) {
+    EXPECT_GE(tissue.f1, tissue.fidelity) << "label " << tissue.label;
+    EXPECT_GE(tissue.f2, tissue.fidelity) << "label " << tissue.label;
+  }
+}
+
+void expect_manifold(const Result& result) {
+  for (const TissueAssessment& tissue : assess_quickly(result, nullptr).tissues) {
+    EXPECT_EQ(tissue.topology.nonmanifold_edges, 0u) << "label " << tissue.label;
+    EXPECT_EQ(tissue.topology.nonmanifold_vertices, 0u) << "label " << tissue.label;
+  }
+}
+
+void expect_components(const LabelImage& image, const Result& result) {
+  constexpr std::uint64_t kFewVoxels = 50;
+  for (const TissueAssessment& tissue : assess_quickly(result, &image).tissues) {
+    if (!tissue.in_mesh || tissue.fidelity.image_voxels <= kFewVoxels) continue;
+    EXPECT_EQ(tissue.topology.tet_components, tissue.topology.image_components_26) << "label " << tissue.label;
+  }
+}
+
 void expect_guarantees(const LabelImage& image, const Result& result) {
   expect_valid(image, result);
   expect_bounded(result);
   expect_complete(image, result);
   expect_in_place(image, result);
+  expect_fidelity_as_measured(image, result);
+  expect_manifold(result);
+  expect_components(image, result);
 }
 
 }  // namespace anatomesh::testing

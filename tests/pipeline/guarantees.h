@@ -17,7 +17,19 @@ void expect_complete(const LabelImage& image, const Result& result);
 /// Most of each tissue's volume lies, in physical space, within a voxel of a voxel with its label.
 void expect_in_place(const LabelImage& image, const Result& result);
 
-/// All of the above.
+/// What the result says of the tissues' fidelity is what assess() measures of its mesh.
+void expect_fidelity_as_measured(const LabelImage& image, const Result& result);
+
+/// Every tissue has the fidelity asked for.
+void expect_faithful(const Result& result);
+
+/// No tissue's surface has an edge or vertex at which it is not manifold.
+void expect_manifold(const Result& result);
+
+/// Every tissue of more than 50 voxels has as many components in the mesh as in the image (26-connected).
+void expect_components(const LabelImage& image, const Result& result);
+
+/// All of the above, except that a tissue may have less than the fidelity asked for as long as the result says so.
 void expect_guarantees(const LabelImage& image, const Result& result);
 
 /// Centres of voxels, as positions in LabelImage::voxels, strictly inside more than one tetrahedron.

@@ -65,6 +65,25 @@ Options options_for(const LabelImage& image, double bcc_size_vox) {
   return options;
 }
 
+void expect_whole_surfaces(const Assessment& assessment) {
+  constexpr std::uint64_t kFewVoxels = 50;
+  EXPECT_EQ(assessment.summary.nonmanifold_edges, 0u);
+  EXPECT_EQ(assessment.summary.nonmanifold_vertices, 0u);
+  for (const TissueAssessment& tissue : assessment.tissues) {
+    if (tissue.fidelity.image_voxels <= kFewVoxels) continue;
+    EXPECT_EQ(tissue.topology.tet_components, tissue.topology.image_components_26) << "label " << tissue.label;
+  }
+}
+
+void expect_fidelity_as_measured(const Result& result, const Assessment& assessment) {
+  for (const TissueOutcome& tissue : result.tissues) {
+    const auto measured = std::ranges::find(assessment.tissues, tissue.label, &TissueAssessment::label);
+    ASSERT_NE(measured, assessment.tissues.end()) << tissue.label;
+    EXPECT_NEAR(tissue.f1, measured->fidelity.f1, 1e-4) << "label " << tissue.label;
+    EXPECT_NEAR(tissue.f2, measured->fidelity.f2, 1e-4) << "label " << tissue.label;
+  }
+}
+
 TEST_P(RealImages, KeepTheGuarantees) {
   const auto path = testing::find_image(GetParam().file);
   if (path.empty()) GTEST_SKIP() << GetParam().file << " is not on this machine";
@@ -79,6 +98,8 @@ TEST_P(RealImages, KeepTheGuarantees) {
             << assessment.whole.fidelity.dice << ", " << assessment.summary.labels_in_mesh << " labels\n";
 
   for (const std::string& failure : failed_guarantees(assessment, options)) ADD_FAILURE() << failure;
+  expect_whole_surfaces(assessment);
+  expect_fidelity_as_measured(result, assessment);
   std::set<Label> in_image(image.voxels.begin(), image.voxels.end());
   in_image.erase(0);
   EXPECT_EQ(std::set<Label>(result.mesh.labels.begin(), result.mesh.labels.end()), in_image);
