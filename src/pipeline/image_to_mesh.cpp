@@ -49,7 +49,8 @@ std::size_t tissue_of(const TissueImage& image, Label label) {
   return static_cast<std::size_t>(std::ranges::lower_bound(image.labels, label) - image.labels.begin());
 }
 
-// No edge has to be shorter than a voxel. A tissue is followed where it is thinner than so many of the coarsest tetrahedra are wide.
+// No edge has to be shorter than a voxel. A tissue is followed where it is thinner than so many of the coarsest
+// tetrahedra are wide.
 SizeField make_sizes(const TissueImage& image, const LatticeOptions& options, const Stage& stage) {
   SizeField sizes{image, {}, {}};
   if (!options.size_label.empty()) sizes.of_tissue_mm.assign(image.labels.size(), kNoSize);
