@@ -76,7 +76,7 @@ class Rounds {
     return plan;
   }
   bool may_refine() const { return options_.fidelity_stage == FidelityStage::final && round_ < kMaxRounds; }
-  Stage part() const;
+  Stage part(double from, double to) const;
   MeshFidelity approach(TissueMesh& mesh) const;
   DeformedMesh finish(TissueMesh mesh, std::size_t target) const;
   bool is_stalled(const MeshFidelity& reached);
@@ -103,13 +103,13 @@ class Rounds {
 };
 
 // The rounds share the progress bar; how many there will be is not known.
-Stage Rounds::part() const {
-  const auto begin = [](int r) { return kLatticeShare + (1 - kLatticeShare) * (1 - std::pow(0.75, r)); };
-  return stage_.part("deform", begin(round_), begin(round_ + 1));
+Stage Rounds::part(double from, double to) const {
+  const auto begin = [](double r) { return kLatticeShare + (1 - kLatticeShare) * (1 - std::pow(0.75, r)); };
+  return stage_.part("deform", begin(round_ + from), begin(round_ + to));
 }
 
 MeshFidelity Rounds::approach(TissueMesh& mesh) const {
-  const Stage stage = part().part("deform", 0, 0.5);
+  const Stage stage = part(0, 0.5);
   deformer_.approach(mesh, stage);
   MeshFidelity reached = measure_fidelity(mesh, image_, stage);
   stage_done_("deform");
@@ -117,7 +117,7 @@ MeshFidelity Rounds::approach(TissueMesh& mesh) const {
 }
 
 DeformedMesh Rounds::finish(TissueMesh mesh, std::size_t target) const {
-  const Stage stage = part().part("deform", 0.5, 1);
+  const Stage stage = part(0.5, 1);
   ImproveOptions improvement = improvement_;
   improvement.target_tets = target;
   deformer_.finish(mesh, improvement, stage);
@@ -141,7 +141,7 @@ std::optional<LabelledLattice> Rounds::refine(MeshFidelity& reached) {
     gap.max_leaves = static_cast<std::size_t>(std::max(16.0, room / kShareLeft / kTetsPerLeaf));
   }
   ++round_;
-  std::optional<LabelledLattice> finer = builder_.refine(gap, part());
+  std::optional<LabelledLattice> finer = builder_.refine(gap, part(0, 0));
   stage_done_("lattice");
   return finer;
 }

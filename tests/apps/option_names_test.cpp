@@ -14,7 +14,7 @@ namespace {
 
 /// Names of the data members in the header, without those that only hold another struct of options.
 std::set<std::string> option_members() {
-  const std::regex member(R"(^  [A-Za-z_:<>, ]+ (\w+)( = [^;]+)?;.*)");
+  const std::regex member(R"(^  [A-Za-z0-9_:<>, ]+ (\w+)( = [^;]+)?;.*)");
   const std::set<std::string> structs = {"lattice", "deform", "material", "default_material"};
   std::set<std::string> names;
   std::istringstream header(read_file(ANATOMESH_OPTIONS_HEADER));

@@ -88,18 +88,15 @@ TEST(MaxElements, AreNeverExceededAndMoreAreNoWorse) {
 TEST(DropIslands, RemovesAndNamesThem) {
   LabelImage image = testing::sphere();
   for (const std::size_t x : {1u, 2u}) image.voxels[x + image.size[0] * (1 + image.size[1])] = 1;
-  image.voxels[image.voxels.size() - 3] = 7;
+  image.voxels[image.voxels.size() - 3] = 7;  // the largest part of a tissue is no island
   Options options;
   options.lattice.drop_islands = 3;
   const Result result = image_to_mesh(image, options);
   testing::expect_valid(image, result);
-  EXPECT_TRUE(std::ranges::all_of(result.mesh.labels, [](Label label) { return label == 1; }));
-  EXPECT_EQ(assess(result.mesh).whole.topology.tet_components, 1u);
-  for (const char* name : {"label 1 ", "label 7 "}) {
-    EXPECT_TRUE(std::ranges::any_of(result.warnings, [&](const std::string& warning) {
-      return warning.find(name) != std::string::npos && warning.find("dropped") != std::string::npos;
-    })) << name;
-  }
+  EXPECT_EQ(assess(result.mesh).whole.topology.tet_components, 2u);
+  EXPECT_TRUE(std::ranges::any_of(result.warnings, [](const std::string& warning) {
+    return warning.find("1 island of label 1 (2 voxels) dropped") != std::string::npos;
+  }));
 }
 
 TEST(DropIslands, KeepsAllWithoutIt) {
