@@ -51,8 +51,14 @@ bool is_fine(const LabelImage& image, const Options& options) {
   return options.lattice.min_size_mm < std::min({s.x, s.y, s.z}) && options.lattice.fidelity >= 0.9;
 }
 
+#ifdef __SANITIZE_ADDRESS__
+constexpr unsigned kSeeds = 15;  // each takes twenty times as long
+#else
+constexpr unsigned kSeeds = 60;
+#endif
+
 TEST(Fuzz, GuaranteesHoldOnSmallRandomImages) {
-  for (unsigned seed = 0; seed < 100; ++seed) {
+  for (unsigned seed = 0; seed < kSeeds; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937 random(seed);
     LabelImage image = random_image(random);
