@@ -52,9 +52,9 @@ bool is_fine(const LabelImage& image, const Options& options) {
 }
 
 #ifdef __SANITIZE_ADDRESS__
-constexpr unsigned kSeeds = 15;  // each takes twenty times as long
+constexpr unsigned kSeeds = 8;  // each takes twenty times as long
 #else
-constexpr unsigned kSeeds = 60;
+constexpr unsigned kSeeds = 40;
 #endif
 
 TEST(Fuzz, GuaranteesHoldOnSmallRandomImages) {
