@@ -188,7 +188,7 @@ TEST(Cancel, AtEveryReport) {
 TEST(Options, SizesAreFilledInFromTheSpacing) {
   const Result result = image_to_mesh(testing::anisotropic(testing::sphere()));
   EXPECT_DOUBLE_EQ(result.options.lattice.bcc_size_mm, 8 * (0.7 + 1.1 + 2.5) / 3);
-  EXPECT_DOUBLE_EQ(result.options.lattice.min_size_mm, 2 * (0.7 + 1.1 + 2.5) / 3);
+  EXPECT_DOUBLE_EQ(result.options.lattice.min_size_mm, (0.7 + 1.1 + 2.5) / 3);
 }
 
 TEST(Options, WithoutIterationsTheLatticeIsKept) {
