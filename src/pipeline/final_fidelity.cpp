@@ -24,34 +24,53 @@ std::vector<Vec3> in_voxels(const std::vector<Vec3>& points_mm, const TissueImag
   return points;
 }
 
+bool is_inside(const TissueImage& image, std::size_t voxel) {
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto [begin, end] = image.inside(a);
+    const auto size = static_cast<std::size_t>(image.size[a]);
+    const auto index = static_cast<int>(voxel % size);
+    if (index < begin || index >= end) return false;
+    voxel /= size;
+  }
+  return true;
+}
+
 }  // namespace
 
 MeshFidelity measure_fidelity(const TissueMesh& mesh, const TissueImage& image, const Stage& stage) {
   GridSize size;
   for (std::size_t a = 0; a < 3; ++a) size[a] = static_cast<std::size_t>(image.size[a]);
+  const std::size_t tissue_count = image.labels.size();
   MeshFidelity result;
   result.tissue_in_mesh.resize(image.voxels.size());
   std::vector<std::vector<Fidelity>> parts((size[2] + OwnedSlices::kMost - 1) / OwnedSlices::kMost);
   const std::vector<Vec3> points = in_voxels(mesh.points_mm, image);
   for_each_owned_slices(points, mesh.tets, size, stage.cancel_token(), [&](const OwnedSlices& slices) {
     auto& counts = parts[slices.first / OwnedSlices::kMost];
-    counts.resize(image.labels.size());
+    counts.resize(2 * tissue_count);
     const std::size_t begin = slices.first * size[0] * size[1];
     for (std::size_t v = 0; v < slices.owner.size(); ++v) {
       const TissueId in_mesh = slices.owner[v] == kNoTet ? TissueId{0} : mesh.tissues[slices.owner[v]];
       result.tissue_in_mesh[begin + v] = in_mesh;
       ++counts[in_mesh].in_tets;
       counts[in_mesh].hits += in_mesh == image.voxels[begin + v];
+      // Tissues have no voxels outside, so hits are the same.
+      counts[tissue_count + in_mesh].in_tets += is_inside(image, begin + v);
     }
   });
-  result.tissues.resize(image.labels.size());
+  result.tissues.resize(tissue_count);
+  result.inside.resize(tissue_count);
   for (const auto& part : parts) {
-    for (std::size_t t = 0; t < part.size(); ++t) {
+    for (std::size_t t = 0; t < tissue_count; ++t) {
       result.tissues[t].in_tets += part[t].in_tets;
       result.tissues[t].hits += part[t].hits;
+      result.inside[t].in_tets += part[tissue_count + t].in_tets;
     }
   }
-  for (std::size_t t = 0; t < image.labels.size(); ++t) result.tissues[t].voxels = image.counts[t];
+  for (std::size_t t = 0; t < tissue_count; ++t) {
+    result.tissues[t].voxels = result.inside[t].voxels = image.counts[t];
+    result.inside[t].hits = result.tissues[t].hits;
+  }
   return result;
 }
 

@@ -13,7 +13,8 @@ namespace anatomesh {
 
 /// How well a mesh holds the voxel centres of each tissue.
 struct MeshFidelity {
-  std::vector<Fidelity> tissues;         ///< F1 and F2 by tissue, [0] unused
+  std::vector<Fidelity> tissues;         ///< F1 and F2 by tissue, [0] unused; a mesh may not bulge out of the image
+  std::vector<Fidelity> inside;          ///< the same of the centres inside the original image alone
   std::vector<TissueId> tissue_in_mesh;  ///< by voxel of the image: the tissue of the mesh at its centre
 };
 

@@ -126,7 +126,7 @@ std::vector<TissueOutcome> describe_tissues(const TissueImage& image, const Latt
   std::vector<TissueOutcome> outcomes;
   for (std::size_t t = 1; t < image.labels.size(); ++t) {
     outcomes.push_back({image.labels[t], image.counts[t], 0, plan.fidelity[t], deformed.lattice[t].f1(),
-                        deformed.lattice[t].f2(), deformed.final.tissues[t].f1(), deformed.final.tissues[t].f2()});
+                        deformed.lattice[t].f2(), deformed.final.inside[t].f1(), deformed.final.inside[t].f2()});
   }
   for (const TissueId t : deformed.mesh.tissues) {
     if (t != 0) ++outcomes[t - 1u].tets;

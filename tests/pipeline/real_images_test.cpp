@@ -77,7 +77,6 @@ void expect_whole_surfaces(const Assessment& assessment) {
   }
 }
 
-// The mesher also counts centres beyond the image's border, where a tissue that touches it may bulge out.
 void expect_fidelity_as_measured(const Result& result, const Assessment& assessment) {
   for (const TissueOutcome& tissue : result.tissues) {
     const auto measured = std::ranges::find(assessment.tissues, tissue.label, &TissueAssessment::label);
