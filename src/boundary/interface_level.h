@@ -12,6 +12,10 @@ namespace anatomesh {
 /// boundary to the background is that border.
 double distance_from_boundary(const SurfaceField& field, Vec3 p, TissueId a, TissueId b);
 
+/// Whether a tissue is too small for the smoothed shares to show: a ball of eight voxels just keeps its place. Its
+/// vertices stay where they are.
+inline bool is_tiny(const TissueImage& image, TissueId tissue) { return image.counts[tissue] < 8; }
+
 /// Whether p lies on the border of the original image, to a millionth of a voxel.
 bool on_image_border(const TissueImage& image, Vec3 p);
 

@@ -7,6 +7,8 @@
 #include <array>
 #include <cstddef>
 
+#include "boundary/cubic_spline.h"
+
 namespace anatomesh {
 namespace {
 
@@ -22,18 +24,6 @@ SubsetSums subset_sums(const std::array<double, 4>& w) {
     for (std::size_t s = 0; s < (std::size_t{1} << bit); ++s) sums[s | (std::size_t{1} << bit)] = sums[s] + w[bit];
   }
   return sums;
-}
-
-std::array<double, 4> spline_weights(double t) {
-  const double s = 1 - t;
-  const double inner0 = (4 - 3 * t * t * (2 - t)) / 6;
-  const double inner1 = (4 - 3 * s * s * (2 - s)) / 6;
-  return {s * s * s / 6, inner0, inner1, t * t * t / 6};
-}
-
-std::array<double, 4> spline_slopes(double t) {
-  const double s = 1 - t;
-  return {-0.5 * s * s, 0.5 * t * (3 * t - 4), -0.5 * s * (3 * s - 4), 0.5 * t * t};
 }
 
 // First of the four voxels around a coordinate (in voxels of the crop), and where in the middle interval it lies.

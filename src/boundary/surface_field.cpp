@@ -4,20 +4,11 @@
 #include <cstddef>
 
 #include "base/vec.h"
+#include "boundary/cubic_spline.h"
 #include "boundary/voxel_weights.h"
 
 namespace anatomesh {
 namespace {
-
-std::array<double, 4> spline_weights(double t) {
-  const double s = 1 - t;
-  return {s * s * s / 6, (4 - 3 * t * t * (2 - t)) / 6, (4 - 3 * s * s * (2 - s)) / 6, t * t * t / 6};
-}
-
-std::array<double, 4> spline_slopes(double t) {
-  const double s = 1 - t;
-  return {-0.5 * s * s, 0.5 * t * (3 * t - 4), -0.5 * s * (3 * s - 4), 0.5 * t * t};
-}
 
 // The four voxels around a coordinate (in voxels of the crop), and where in the middle interval it lies.
 struct Support {

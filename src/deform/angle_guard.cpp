@@ -118,12 +118,7 @@ double AngleGuard::slack_of(TetId t, VertexId v, Vec3 p) const {
   if (mesh_.tissues[t] == 0) return within(kCushionBounds, a, b, c, d) ? 1 : -1;
   const TetGeometry g(a, b, c, d);
   if (!(g.volume6 > 0)) return -1;
-  double largest = -1, smallest = 1;
-  for (std::size_t e = 0; e < 6; ++e) {
-    const double cosine = g.cosine[e] / g.areas[e];
-    largest = std::max(largest, cosine);
-    smallest = std::min(smallest, cosine);
-  }
+  const auto [largest, smallest] = g.cosine_range();
   // The mean ratio's cube needs no cube root; divided by its slope at the bound it is like the ratio itself there.
   const double bound = bounds_.min_mean_ratio;
   const double cube = 432 * g.volume6 * g.volume6 / (g.edges * g.edges * g.edges);

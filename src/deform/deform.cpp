@@ -24,6 +24,12 @@ std::vector<Material> materials_of(const TissueImage& image, const DeformOptions
   return materials;
 }
 
+// None for a lattice that is kept as it is.
+std::vector<EdgePoint> find_targets(const TissueImage& image, const DeformOptions& options, const Stage& stage) {
+  if (options.iterations == 0) return {};
+  return thin_edge_points(find_edge_points(image, stage.cancel_token()), options.non_connectivity);
+}
+
 }  // namespace
 
 Deformer::Deformer(const TissueImage& image, const DeformOptions& options, const Stage& stage)
@@ -32,7 +38,7 @@ Deformer::Deformer(const TissueImage& image, const DeformOptions& options, const
       bounds_(ShapeBounds::from_degrees(options.min_dihedral_deg, options.max_dihedral_deg, options.min_mean_ratio)),
       materials_(materials_of(image, options)),
       field_(image),
-      targets_(thin_edge_points(find_edge_points(image, stage.cancel_token()), options.non_connectivity)) {}
+      targets_(find_targets(image, options, stage)) {}
 
 void Deformer::approach(TissueMesh& mesh, const Stage& stage) const {
   if (options_.iterations == 0) return;

@@ -135,10 +135,7 @@ void Improver::coarsen_inside() {
 }
 
 ImproveReport Improver::run() {
-  const auto tissue_tets = [&] {
-    return mesh_.tissues.size() - static_cast<std::size_t>(std::ranges::count(mesh_.tissues, TissueId{0}));
-  };
-  report_.tets_before = tissue_tets();
+  report_.tets_before = tissue_tets(mesh_);
   coarsen_early();
   stage_.at(0.1);
   smooth(kSmoothings, 0.1, 0.5);
@@ -150,7 +147,7 @@ ImproveReport Improver::run() {
   stage_.at(0.8);
   coarsen_inside();
   stage_.at(1);
-  report_.tets_after = tissue_tets();
+  report_.tets_after = tissue_tets(mesh_);
   return report_;
 }
 

@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "base/vec.h"
+#include "boundary/interface_level.h"
 #include "deform/interface_faces.h"
 
 namespace anatomesh {
@@ -28,9 +29,6 @@ constexpr double kRelaxation = 0.5;
 // Volume is won back by shifting a tissue's boundary no farther than this share of a voxel, a part of it in each sweep.
 constexpr double kMostShift = 0.15;
 constexpr double kDamping = 0.5;
-
-// A ball of this many voxels just keeps its place in the smoothed field.
-constexpr std::uint64_t kTinyVoxels = 8;
 
 // A sum of squared distances to planes, as a function of a displacement.
 struct Quadric {
@@ -102,7 +100,7 @@ class Settling {
     const double most = kMostShift * (s.x + s.y + s.z) / 3;
     for (std::size_t t = 1; t < volume.size(); ++t) {
       if (area[t] == 0) continue;
-      const double lacking = static_cast<double>(image.counts[t]) * s.x * s.y * s.z - volume[t];
+      const double lacking = image.volume_mm3(t) - volume[t];
       outward_mm_[t] = std::clamp(outward_mm_[t] + kDamping * lacking / area[t], -most, most);
     }
   }
@@ -130,8 +128,7 @@ class Settling {
 
  private:
   bool touches_tiny_tissue(VertexId v) const {
-    return std::ranges::any_of(topology_.tissues_of_vertex[v],
-                               [&](TissueId t) { return field_.image().counts[t] < kTinyVoxels; });
+    return std::ranges::any_of(topology_.tissues_of_vertex[v], [&](TissueId t) { return is_tiny(field_.image(), t); });
   }
 
   Vec3 centroid(const InterfaceFace& face) const {

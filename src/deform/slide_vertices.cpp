@@ -13,10 +13,9 @@
 namespace anatomesh {
 namespace {
 
-constexpr double kGain = 1e-3;            // of slack
-constexpr double kMaxTurnCos = 0.94;      // of an interface face
-constexpr double kNearVoxels = 0.05;      // from the level on which a vertex slides
-constexpr std::uint64_t kTinyVoxels = 8;  // tissues that the smoothed shares do not show stay as they are
+constexpr double kGain = 1e-3;        // of slack
+constexpr double kMaxTurnCos = 0.94;  // of an interface face
+constexpr double kNearVoxels = 0.05;  // from the level on which a vertex slides
 
 class Slider {
  public:
@@ -88,8 +87,7 @@ bool Slider::visit(VertexId v, double enough) {
   Vec3 at = star_.points()[0];
   const double before = worst_at(at, -2);
   if (before >= enough) return false;
-  const auto& counts = field_.image().counts;
-  if (std::ranges::any_of(tissues_, [&](TissueId t) { return counts[t] < kTinyVoxels; })) return false;
+  if (std::ranges::any_of(tissues_, [&](TissueId t) { return is_tiny(field_.image(), t); })) return false;
   if (on_image_border(field_.image(), at)) return false;
   interface_.clear();
   for (const auto& face : star_.gather_faces()) {

@@ -52,6 +52,10 @@ struct TissueImage {
   /// Where the original image ends along an axis: half a voxel before its first and past its last voxel centre.
   double low_border_mm(std::size_t axis) const { return -0.5 * spacing_mm[axis]; }
   double high_border_mm(std::size_t axis) const { return (static_cast<double>(whole[axis]) - 0.5) * spacing_mm[axis]; }
+  /// Volume of a tissue's voxels.
+  double volume_mm3(std::size_t tissue) const {
+    return static_cast<double>(counts[tissue]) * spacing_mm.x * spacing_mm.y * spacing_mm.z;
+  }
   Vec3 centre_mm(int i, int j, int k) const {
     return {static_cast<double>(first[0] + i) * spacing_mm.x, static_cast<double>(first[1] + j) * spacing_mm.y,
             static_cast<double>(first[2] + k) * spacing_mm.z};

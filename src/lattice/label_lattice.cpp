@@ -168,8 +168,7 @@ std::vector<Demand> LabelLattice::Impl::demands() const {
     if (f.f1() < target_[t] || f.f2() < target_[t]) demands[t].level_limit = plan_.levels;
     if (std::min(f.f1(), f.f2()) < plan_.fidelity[t] - kFarShort)
       demands[t].level_limit = std::min(plan_.levels + 1, deepest_);
-    const Vec3 s = image_.spacing_mm;
-    const double off = std::abs(volume_mm3[t] / (static_cast<double>(image_.counts[t]) * s.x * s.y * s.z) - 1);
+    const double off = std::abs(volume_mm3[t] / image_.volume_mm3(t) - 1);
     const double far_off = kFarOff + 1 - plan_.fidelity[t];
     demands[t].thin = off > far_off;
     if (demands[t].thin) demands[t].level_limit = std::min(plan_.levels + (off > 2 * far_off ? 2 : 1), deepest_);

@@ -16,7 +16,7 @@ MeshEditor::MeshEditor(const TissueMesh& mesh) : mesh_(mesh) {
     stars_[v] = {lists.begin[v], count, count};
   }
   incident_ = std::move(lists.items);
-  tissue_tets_ = static_cast<std::size_t>(std::ranges::count_if(mesh_.tissues, [](TissueId t) { return t != 0; }));
+  tissue_tets_ = anatomesh::tissue_tets(mesh_);
   tissues_at_.resize(stars_.size());
   is_outer_.resize(stars_.size());
   changed_at_.assign(stars_.size(), 0);

@@ -61,21 +61,29 @@ struct TetGeometry {
     areas = {area2[0] * area2[1], area2[0] * area2[2], area2[0] * area2[3],
              area2[1] * area2[2], area2[1] * area2[3], area2[2] * area2[3]};
   }
+
+  /// Cosines of the smallest and of the largest dihedral angle.
+  struct CosineRange {
+    double largest = -1, smallest = 1;
+  };
+  CosineRange cosine_range() const {
+    CosineRange range;
+    for (std::size_t e = 0; e < 6; ++e) {
+      const double c = cosine[e] / areas[e];
+      range.largest = std::max(range.largest, c);
+      range.smallest = std::min(range.smallest, c);
+    }
+    return range;
+  }
 };
 
 /// Shape of a positively oriented tetrahedron; of any other one that breaks all bounds.
 inline ShapeMeasure measure_shape(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
   const TetGeometry g(a, b, c, d);
   if (!(g.volume6 > 0)) return {};
-  ShapeMeasure shape{-1, 1, 0};
-  for (std::size_t e = 0; e < 6; ++e) {
-    const double cosine = g.cosine[e] / g.areas[e];
-    shape.largest_cos = std::max(shape.largest_cos, cosine);
-    shape.smallest_cos = std::min(shape.smallest_cos, cosine);
-  }
+  const auto [largest_cos, smallest_cos] = g.cosine_range();
   const double half_volume6 = 0.5 * g.volume6;  // = 3 V
-  shape.mean_ratio = 12 * std::cbrt(half_volume6 * half_volume6) / g.edges;
-  return shape;
+  return {largest_cos, smallest_cos, 12 * std::cbrt(half_volume6 * half_volume6) / g.edges};
 }
 
 /// bounds.hold(measure_shape(a, b, c, d)) without an inverse trigonometric function, a cube root or a division.
@@ -93,12 +101,7 @@ inline bool within(const ShapeBounds& bounds, Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
 inline double slack(const ShapeBounds& bounds, Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
   const TetGeometry g(a, b, c, d);
   if (!(g.volume6 > 0)) return -2;
-  double largest = -1, smallest = 1;
-  for (std::size_t e = 0; e < 6; ++e) {
-    const double cosine = g.cosine[e] / g.areas[e];
-    largest = std::max(largest, cosine);
-    smallest = std::min(smallest, cosine);
-  }
+  const auto [largest, smallest] = g.cosine_range();
   const double angles = std::min(bounds.largest_cos - largest, smallest - bounds.smallest_cos);
   // The cube root is needed only where the mean ratio is what is nearest to its bound.
   const double half_volume6 = 0.5 * g.volume6, square = half_volume6 * half_volume6;

@@ -1,6 +1,12 @@
 #include "mesh/tissue_mesh.h"
 
+#include <algorithm>
+
 namespace anatomesh {
+
+std::size_t tissue_tets(const TissueMesh& mesh) {
+  return mesh.tissues.size() - static_cast<std::size_t>(std::ranges::count(mesh.tissues, TissueId{0}));
+}
 
 TissueMesh with_cushion_last(const TissueMesh& mesh) {
   constexpr auto kUnused = static_cast<VertexId>(-1);

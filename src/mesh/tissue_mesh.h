@@ -19,6 +19,9 @@ struct TissueMesh {
   std::vector<TissueId> tissues;  ///< one a tetrahedron
 };
 
+/// Tetrahedra without the cushion's.
+std::size_t tissue_tets(const TissueMesh& mesh);
+
 /// The same mesh with the tissues' tetrahedra before the cushion's, and their vertices before those of the cushion
 /// alone; otherwise in the same order. The stages rely on it. Vertices of no tetrahedron are dropped.
 TissueMesh with_cushion_last(const TissueMesh& mesh);

@@ -153,7 +153,7 @@ void check_memory(const Options& options, const LabelImage& image, const TissueI
   // Measured: the finest tetrahedra lie in a layer along the boundaries, about this many for each square of the
   // smallest lattice spacing, and each takes this much while the mesh deforms.
   // The coarsest lattice covers the whole crop.
-  constexpr double kTetsPerSquare = 12, kBytesPerTet = 700, kBytesPerVoxel = 6, kBytesPerCell = 1200;
+  constexpr double kTetsPerSquare = 12, kBytesPerTet = 700, kBytesPerVoxel = 9, kBytesPerCell = 1200;
   constexpr double kGib = 1024.0 * 1024 * 1024;
   // A fidelity of the final mesh takes its smallest size in a few places only.
   const double h = options.lattice.min_size_mm * (options.lattice.fidelity_stage == FidelityStage::final ? 2 : 1);

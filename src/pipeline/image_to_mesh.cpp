@@ -170,9 +170,8 @@ void describe_shrinkage(const TissueMesh& mesh, const TissueImage& image, std::v
     volume_mm3[mesh.tissues[t]] +=
         six_volumes(mesh.points_mm[v[0]], mesh.points_mm[v[1]], mesh.points_mm[v[2]], mesh.points_mm[v[3]]) / 6;
   }
-  const Vec3 s = image.spacing_mm;
   for (std::size_t t = 1; t < volume_mm3.size(); ++t) {
-    const double off = volume_mm3[t] / (static_cast<double>(image.counts[t]) * s.x * s.y * s.z) - 1;
+    const double off = volume_mm3[t] / image.volume_mm3(t) - 1;
     if (volume_mm3[t] == 0 || std::abs(off) <= kMuch) continue;
     warnings.push_back(with_voxels(image.labels[t], image.counts[t]) + " has " +
                        std::to_string(static_cast<int>(std::round(100 * (1 + off)))) +

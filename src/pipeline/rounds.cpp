@@ -41,10 +41,6 @@ double mean_reached(const std::vector<Fidelity>& reached) {
   return sum / static_cast<double>(reached.size() - 1);
 }
 
-std::size_t tissue_tets(const TissueMesh& mesh) {
-  return mesh.tissues.size() - static_cast<std::size_t>(std::ranges::count(mesh.tissues, TissueId{0}));
-}
-
 class Rounds {
  public:
   Rounds(const TissueImage& image, const LatticePlan& plan, const Options& options, const Stage& stage,
@@ -187,7 +183,7 @@ DeformedMesh Rounds::run() {
   lattice_ = builder_.build(stage_.part("lattice", 0, kLatticeShare));
   stage_done_("lattice");
   for (;;) {
-    TissueMesh mesh = lattice_.mesh;
+    TissueMesh mesh = std::move(lattice_.mesh);
     MeshFidelity reached = approach(mesh);
     if (exceeds_budget(mesh)) return within_budget(std::move(mesh));
     std::optional<LabelledLattice> finer;

@@ -8,26 +8,17 @@
 
 #include "base/parallel.h"
 #include "base/vec.h"
+#include "lattice/built_lattice.h"
 #include "mesh/mesh_checks.h"
 #include "support/test_images.h"
 
 namespace anatomesh {
 namespace {
 
+using testing::build;
 using testing::Corners;
 using testing::NamedImage;
-
-LatticePlan plan_for(const TissueImage& image, double bcc_size_mm, double fidelity) {
-  LatticePlan plan;
-  plan.bcc_size_mm = bcc_size_mm;
-  plan.fidelity.assign(image.labels.size(), fidelity);
-  return plan;
-}
-
-LabelledLattice build(const TissueImage& image, const LatticePlan& plan) {
-  const Progress progress;
-  return LabelLattice(image, plan).build(Stage(progress, "lattice", 0, 1));
-}
+using testing::plan_for;
 
 /// The shapes, and anisotropic versions of some.
 std::vector<NamedImage> images() {

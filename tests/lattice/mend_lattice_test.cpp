@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "lattice/built_lattice.h"
 #include "lattice/label_lattice.h"
 #include "lattice/surface_checks.h"
 #include "mesh/mesh_checks.h"
@@ -12,20 +13,10 @@
 namespace anatomesh {
 namespace {
 
+using testing::build;
 using testing::make_image;
 using testing::NamedImage;
-
-LatticePlan plan_for(const TissueImage& image, double bcc_size_mm, double fidelity) {
-  LatticePlan plan;
-  plan.bcc_size_mm = bcc_size_mm;
-  plan.fidelity.assign(image.labels.size(), fidelity);
-  return plan;
-}
-
-LabelledLattice build(const TissueImage& image, const LatticePlan& plan) {
-  const Progress progress;
-  return LabelLattice(image, plan).build(Stage(progress, "lattice", 0, 1));
-}
+using testing::plan_for;
 
 /// Every tissue, and all of them together (label 0: the outer surface), against the image.
 void expect_whole(const TissueImage& image, const TissueMesh& mesh) {
