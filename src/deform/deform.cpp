@@ -47,7 +47,8 @@ void Deformer::approach(TissueMesh& mesh, const Stage& stage) const {
   const AngleGuard guard(mesh, topology, bounds_);
   register_mesh(mesh, topology, guard, field_, targets_, materials_, std::min(options_.iterations, kFirstIterations),
                 stage.part("register", 0.1, 0.7));
-  settle(mesh, topology, guard, field_, kFirstSettleSweeps, stage.part("settle", 0.7, 1.0));
+  std::vector<double> outward_mm(image_.labels.size(), 0);
+  settle(mesh, topology, guard, field_, kFirstSettleSweeps, outward_mm, stage.part("settle", 0.7, 1.0));
 }
 
 void Deformer::finish(TissueMesh& mesh, const ImproveOptions& improvement, const Stage& stage) const {
@@ -57,8 +58,9 @@ void Deformer::finish(TissueMesh& mesh, const ImproveOptions& improvement, const
   if (options_.iterations > kFirstIterations)
     register_mesh(mesh, topology, guard, field_, targets_, materials_, options_.iterations - kFirstIterations,
                   stage.part("register", 0.1, 0.7));
-  settle(mesh, topology, guard, field_, kSettleSweeps, stage.part("settle", 0.7, 0.8));
-  improve(mesh, field_, bounds_, improvement, stage.part("improve", 0.8, 1.0));
+  std::vector<double> outward_mm(image_.labels.size(), 0);
+  settle(mesh, topology, guard, field_, kSettleSweeps, outward_mm, stage.part("settle", 0.7, 0.8));
+  improve(mesh, field_, bounds_, improvement, outward_mm, stage.part("improve", 0.8, 1.0));
 }
 
 }  // namespace anatomesh

@@ -39,8 +39,8 @@ ShapeBounds tightened(const ShapeBounds& bounds, double margin_deg) {
 class Improver {
  public:
   Improver(TissueMesh& mesh, const SurfaceField& field, const ShapeBounds& bounds, const ImproveOptions& options,
-           const Stage& stage)
-      : mesh_(mesh), field_(field), bounds_(bounds), options_(options), stage_(stage) {}
+           std::vector<double>& outward_mm, const Stage& stage)
+      : mesh_(mesh), field_(field), bounds_(bounds), options_(options), outward_mm_(outward_mm), stage_(stage) {}
 
   ImproveReport run();
 
@@ -56,6 +56,7 @@ class Improver {
   const SurfaceField& field_;
   const ShapeBounds& bounds_;
   const ImproveOptions& options_;
+  std::vector<double>& outward_mm_;
   const Stage& stage_;
   ImproveReport report_;
 };
@@ -74,7 +75,7 @@ void Improver::smooth(int times, double begin, double end) {
     mesh_ = editor.result();
     const MeshTopology topology = make_topology(mesh_);
     settle(mesh_, topology, AngleGuard(mesh_, topology, bounds_), field_, kSettleSweeps,
-           stage_.part("settle", begin + (end - begin) * n / times, begin + (end - begin) * (n + 1) / times));
+           outward_mm_, stage_.part("settle", begin + (end - begin) * n / times, begin + (end - begin) * (n + 1) / times));
   }
 }
 
@@ -154,8 +155,8 @@ ImproveReport Improver::run() {
 }  // namespace
 
 ImproveReport improve(TissueMesh& mesh, const SurfaceField& field, const ShapeBounds& bounds,
-                      const ImproveOptions& options, const Stage& stage) {
-  return Improver(mesh, field, bounds, options, stage).run();
+                      const ImproveOptions& options, std::vector<double>& outward_mm, const Stage& stage) {
+  return Improver(mesh, field, bounds, options, outward_mm, stage).run();
 }
 
 }  // namespace anatomesh

@@ -35,8 +35,8 @@ struct ImproveReport {
 /// and the interfaces, which they held back, settled again; then vertices are collapsed, on interfaces inside the
 /// tolerance, inside the tissues as far as the bounds and sizes allow. All tetrahedra of the tissues stay inside the
 /// bounds, and the tissues' topology stays as it is. Cushion last, as before. Does not depend on the number of threads.
-/// Throws Cancelled.
+/// outward_mm: as for settle(). Throws Cancelled.
 ImproveReport improve(TissueMesh& mesh, const SurfaceField& field, const ShapeBounds& bounds,
-                      const ImproveOptions& options, const Stage& stage);
+                      const ImproveOptions& options, std::vector<double>& outward_mm, const Stage& stage);
 
 }  // namespace anatomesh

@@ -70,14 +70,15 @@ struct PairAtVertex {
 
 class Settling {
  public:
-  Settling(TissueMesh& mesh, const MeshTopology& topology, const AngleGuard& guard, const SurfaceField& field)
+  Settling(TissueMesh& mesh, const MeshTopology& topology, const AngleGuard& guard, const SurfaceField& field,
+           std::vector<double>& outward_mm)
       : mesh_(mesh),
         topology_(topology),
         guard_(guard),
         field_(field),
         interfaces_(find_interface_faces(mesh, topology, field.image())),
         planes_(interfaces_.faces.size()),
-        outward_mm_(field.image().labels.size()) {
+        outward_mm_(outward_mm) {
     const Vec3 s = field.image().spacing_mm;
     voxel_mm_ = std::max({s.x, s.y, s.z});
   }
@@ -260,15 +261,15 @@ class Settling {
   const SurfaceField& field_;
   InterfaceFaces interfaces_;
   std::vector<Plane> planes_;
-  std::vector<double> outward_mm_;  // by tissue: its boundary's shift
+  std::vector<double>& outward_mm_;
   double voxel_mm_;
 };
 
 }  // namespace
 
 void settle(TissueMesh& mesh, const MeshTopology& topology, const AngleGuard& guard, const SurfaceField& field,
-            int sweeps, const Stage& stage) {
-  Settling settling(mesh, topology, guard, field);
+            int sweeps, std::vector<double>& outward_mm, const Stage& stage) {
+  Settling settling(mesh, topology, guard, field, outward_mm);
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     if (sweep > 0) settling.keep_volumes();
     settling.find_planes();

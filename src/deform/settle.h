@@ -2,6 +2,8 @@
 // tissues.
 #pragma once
 
+#include <vector>
+
 #include "base/stage.h"
 #include "boundary/surface_field.h"
 #include "deform/angle_guard.h"
@@ -11,8 +13,9 @@ namespace anatomesh {
 /// Moves interface vertices so that the faces around them straddle the boundary of their two tissues and lie along it,
 /// and evenly along their surface or junction line, under the guard; vertices inside make room. `sweeps` times; fewer
 /// do where the mesh lies near the boundary already. Faces at the border of the original image go onto that border.
-/// Vertices of tissues of fewer than eight voxels stay.
+/// Vertices of tissues of fewer than eight voxels stay. outward_mm: by tissue, how far its boundary is shifted outward
+/// for the sake of its volume; zeros at first, carried from call to call.
 void settle(TissueMesh& mesh, const MeshTopology& topology, const AngleGuard& guard, const SurfaceField& field,
-            int sweeps, const Stage& stage);
+            int sweeps, std::vector<double>& outward_mm, const Stage& stage);
 
 }  // namespace anatomesh

@@ -165,6 +165,7 @@ std::vector<Demand> LabelLattice::Impl::demands() const {
   demands[0].absent = false;
   for (std::size_t t = 1; t < demands.size(); ++t) {
     const Fidelity& f = fidelity[t];
+    if (!plan_.surface_level.empty()) demands[t].level_limit = plan_.surface_level[t];
     if (f.f1() < target_[t] || f.f2() < target_[t]) demands[t].level_limit = plan_.levels;
     if (std::min(f.f1(), f.f2()) < plan_.fidelity[t] - kFarShort)
       demands[t].level_limit = std::min(plan_.levels + 1, deepest_);

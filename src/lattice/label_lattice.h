@@ -21,6 +21,8 @@ struct LatticePlan {
   int levels = 2;                ///< red refinements that fidelity may ask for: smallest spacing bcc_size / 2^levels
   int extra_levels = 3;          ///< further ones for a tissue that would have no tetrahedron at all
   std::vector<double> fidelity;  ///< F by tissue, [0] unused
+  /// Level that is had everywhere along a tissue's boundary, whatever its fidelity; by tissue, empty: 0.
+  std::vector<int> surface_level;
   const SizeField* sizes =
       nullptr;                      ///< tetrahedra with longer edges are refined; null: none are. Must outlive the plan
   bool allow_non_manifold = false;  ///< leaves the tissues' surfaces as the labels make them

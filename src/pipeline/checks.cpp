@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <sstream>
 #include <string>
 
@@ -11,6 +12,7 @@
 #include "base/parallel.h"
 #include "base/rotation.h"
 #include "base/vec.h"
+#include "image/boundary_area.h"
 
 namespace anatomesh {
 namespace {
@@ -46,23 +48,6 @@ void require_label(const TissueImage& tissues, Label label, const char* option) 
   if (label != 0 && std::binary_search(tissues.labels.begin(), tissues.labels.end(), label)) return;
   throw InvalidOption(std::string(option) + " names label " + std::to_string(label) +
                       ", which is not among the labels to mesh");
-}
-
-// Area of all voxel faces between two tissues, mm^2. The crop's last rows and slices are background.
-double interface_area_mm2(const TissueImage& image) {
-  const Vec3 s = image.spacing_mm;
-  const auto sy = static_cast<std::size_t>(image.size[0]), sz = sy * static_cast<std::size_t>(image.size[1]);
-  const auto rows = image.voxels.size() / sy;
-  return parallel_sum(rows, 256, [&](std::size_t begin, std::size_t end) {
-    std::array<std::size_t, 3> faces = {0, 0, 0};
-    for (std::size_t v = begin * sy; v < std::min(end * sy, image.voxels.size() - sz); ++v) {
-      faces[0] += image.voxels[v] != image.voxels[v + 1];
-      faces[1] += image.voxels[v] != image.voxels[v + sy];
-      faces[2] += image.voxels[v] != image.voxels[v + sz];
-    }
-    return static_cast<double>(faces[0]) * s.y * s.z + static_cast<double>(faces[1]) * s.x * s.z +
-           static_cast<double>(faces[2]) * s.x * s.y;
-  });
 }
 
 void require_ordered_sizes(const LatticeOptions& l) {
@@ -134,10 +119,10 @@ void check_image(const LabelImage& image) {
 Options with_sizes_filled_in(const Options& options, const LabelImage& image) {
   Options filled = options;
   const Vec3 s = image.spacing_mm;
-  if (filled.lattice.bcc_size_mm == 0) filled.lattice.bcc_size_mm = 8 * (s.x + s.y + s.z) / 3;
+  if (filled.lattice.bcc_size_mm == 0) filled.lattice.bcc_size_mm = 16 * (s.x + s.y + s.z) / 3;
   if (filled.lattice.min_size_mm == 0)
     filled.lattice.min_size_mm =
-        filled.lattice.bcc_size_mm / (filled.lattice.fidelity_stage == FidelityStage::final ? 8 : 4);
+        filled.lattice.bcc_size_mm / (filled.lattice.fidelity_stage == FidelityStage::final ? 32 : 4);
   require_ordered_sizes(filled.lattice);
   return filled;
 }
@@ -157,7 +142,9 @@ void check_memory(const Options& options, const LabelImage& image, const TissueI
   constexpr double kGib = 1024.0 * 1024 * 1024;
   // A fidelity of the final mesh takes its smallest size in a few places only.
   const double h = options.lattice.min_size_mm * (options.lattice.fidelity_stage == FidelityStage::final ? 2 : 1);
-  const double tets = kTetsPerSquare * interface_area_mm2(tissues) / (h * h);
+  const std::vector<double> areas = boundary_areas_mm2(tissues);
+  const double interfaces_mm2 = 0.5 * std::accumulate(areas.begin(), areas.end(), 0.0);
+  const double tets = kTetsPerSquare * interfaces_mm2 / (h * h);
   double cells = 1;
   for (std::size_t a = 0; a < 3; ++a)
     cells *= tissues.size[a] * tissues.spacing_mm[a] / options.lattice.bcc_size_mm + 3;

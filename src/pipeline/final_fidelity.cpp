@@ -13,7 +13,7 @@ namespace {
 
 // Not every wrong voxel in a refined tetrahedron becomes right, but its neighbours gain as well. Asking for a little
 // more than F saves rounds at the end.
-constexpr double kOvershoot = 1, kMargin = 0.004;
+constexpr double kMargin = 0.08;  // of what may be wrong
 
 std::vector<Vec3> in_voxels(const std::vector<Vec3>& points_mm, const TissueImage& image) {
   std::vector<Vec3> points(points_mm.size());
@@ -81,13 +81,13 @@ FidelityGap find_gap(MeshFidelity& reached, const TissueImage& image, std::span<
   for (std::size_t t = 1; t < image.labels.size(); ++t) {
     const Fidelity& f = reached.tissues[t];
     const auto hits = static_cast<double>(f.hits);
-    const double asked = std::min(1.0, wanted[t] + kMargin);
+    const double asked = wanted[t] + kMargin * (1 - wanted[t]);
     lacks[t] = f.f2() < wanted[t];
     exceeds[t] = f.f1() < wanted[t];
     double wrong = 0;
     if (lacks[t]) wrong += asked * static_cast<double>(f.voxels) - hits;
     if (exceeds[t]) wrong += static_cast<double>(f.in_tets) - hits / asked;
-    gap.to_mend[t] = static_cast<std::uint64_t>(std::ceil(kOvershoot * wrong));
+    gap.to_mend[t] = static_cast<std::uint64_t>(std::ceil(wrong));
   }
   gap.wrong = std::move(reached.tissue_in_mesh);
   parallel_for(

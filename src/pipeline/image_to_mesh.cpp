@@ -19,6 +19,7 @@
 #include "mesh/tet_shape.h"
 #include "pipeline/checks.h"
 #include "pipeline/rounds.h"
+#include "pipeline/surface_sizes.h"
 
 namespace anatomesh {
 namespace {
@@ -65,14 +66,7 @@ SizeField make_sizes(const TissueImage& image, const LatticeOptions& options, co
 
 LatticePlan make_plan(const TissueImage& image, const LatticeOptions& options) {
   LatticePlan plan;
-  plan.bcc_size_mm = options.bcc_size_mm;
-  constexpr double kMaxLevels = 16;  // far more than coordinates allow
-  plan.levels = static_cast<int>(
-      std::clamp(std::floor(std::log2(options.bcc_size_mm / options.min_size_mm) + 1e-9), 0.0, kMaxLevels));
-  // Deep enough for a tissue of one voxel: tetrahedra a quarter as wide as the thinnest side of it.
-  const double thinnest = std::min({image.spacing_mm.x, image.spacing_mm.y, image.spacing_mm.z});
-  const double smallest = std::ldexp(options.bcc_size_mm, -plan.levels);
-  plan.extra_levels = static_cast<int>(std::clamp(std::ceil(std::log2(4 * smallest / thinnest)), 0.0, 8.0));
+  set_root(plan, image, options.bcc_size_mm, options.min_size_mm);
   plan.allow_non_manifold = options.allow_non_manifold;
   plan.fidelity.assign(image.labels.size(), options.fidelity);
   for (const auto& [label, fidelity] : options.fidelity_label) {
@@ -199,8 +193,14 @@ Result image_to_mesh(const LabelImage& image, const Options& options, const Prog
   LatticePlan plan = make_plan(tissues, result.options.lattice);
   const SizeField sizes = make_sizes(tissues, result.options.lattice, reading);
   if (!sizes.empty()) plan.sizes = &sizes;
-  const DeformedMesh deformed = refine_and_deform(tissues, plan, result.options, Stage(progress, "lattice", 0.05, 0.95),
-                                                  [&](std::string name) { watch.stage_done(std::move(name)); });
+  LatticeOptions& lattice = result.options.lattice;
+  // The default root spacing is the largest one; a given one is kept.
+  const double smallest_root_mm = options.lattice.bcc_size_mm > 0 ? lattice.bcc_size_mm : lattice.bcc_size_mm / 2;
+  const SurfaceSizes::Range range = {smallest_root_mm, lattice.bcc_size_mm, lattice.min_size_mm};
+  const DeformedMesh deformed =
+      refine_and_deform(tissues, plan, range, result.options, Stage(progress, "lattice", 0.05, 0.95),
+                        [&](std::string name) { watch.stage_done(std::move(name)); });
+  lattice.bcc_size_mm = deformed.root_mm;
 
   const Stage finishing(progress, "finish", 0.95, 1.0);
   result.tissues = describe_tissues(tissues, plan, deformed);

@@ -10,6 +10,7 @@
 #include "image/tissue_image.h"
 #include "lattice/label_lattice.h"
 #include "pipeline/final_fidelity.h"
+#include "pipeline/surface_sizes.h"
 
 namespace anatomesh {
 
@@ -18,6 +19,7 @@ struct DeformedMesh {
   TissueMesh mesh;                ///< with its cushion
   std::vector<Fidelity> lattice;  ///< of the lattice it was deformed from
   MeshFidelity final;             ///< of the mesh itself
+  double root_mm = 0;             ///< spacing of that lattice's root
 };
 
 /// Refines the lattice and deforms it. With a fidelity judged on the final mesh: refines it again where the deformed
@@ -26,7 +28,8 @@ struct DeformedMesh {
 /// voxels of its tetrahedra as they are: vertices that were dragged along with a coarse surface were measured to need
 /// three times the elements for the same fidelity.
 /// stage_done(name) is called after each step. Throws InvalidInput (lattice too large for its coordinates), Cancelled.
-DeformedMesh refine_and_deform(const TissueImage& image, const LatticePlan& plan, const Options& options,
-                               const Stage& stage, const std::function<void(std::string)>& stage_done);
+DeformedMesh refine_and_deform(const TissueImage& image, const LatticePlan& plan, const SurfaceSizes::Range& range,
+                               const Options& options, const Stage& stage,
+                               const std::function<void(std::string)>& stage_done);
 
 }  // namespace anatomesh
