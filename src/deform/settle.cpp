@@ -17,10 +17,10 @@ namespace {
 // What a vertex minimises is a sum of squared distances: of the faces around it from the boundary (at their centroids),
 // of itself from the boundary, of the other ends of those faces from their tangent planes, of itself from where it
 // would be evenly spaced. The weights of these parts:
-constexpr double kOfFaces = 0.75;
-constexpr double kOfVertex = 0.25;
-constexpr double kOfNormals = 0.3;
-constexpr double kOfSpacing = 0.3;
+constexpr double kOfFaces = 0.9;
+constexpr double kOfVertex = 0.1;
+constexpr double kOfNormals = 0.4;
+constexpr double kOfSpacing = 0.04;
 // Faces on the image's border lie there exactly.
 constexpr double kOfBorder = 1e4;
 // Share of the way to the mean of the neighbours in a sweep.
