@@ -189,21 +189,27 @@ bool LabelLattice::Impl::is_too_large(TetRef leaf) const {
   return edge > plan_.sizes->at(votes_.vote(leaf).tissue, middle);
 }
 
-// A leaf is refined when the boundary of a tissue that falls short passes between its voxels, or when it holds
-// a voxel of a tissue that no tetrahedron has taken yet or that is too thin to show between voxel centres.
+// A leaf is refined when the boundary of a tissue that falls short passes between its voxels, or between the corners of
+// one with few voxels, or when it holds a voxel of a tissue that no tetrahedron has taken yet or that is too thin to
+// show between voxel centres.
 bool LabelLattice::Impl::wants_refinement(TetRef leaf, const std::vector<Demand>& demands) const {
   if (is_too_large(leaf)) return true;
+  if (votes_.hands_label_down(leaf)) return false;
   const auto voxels = votes_.voxels(leaf);
-  if (voxels.empty()) return false;
-  const TissueId first = image_.voxels[voxels[0]];
+  const bool is_small = voxels.size() < VoxelVotes::kQuorum;
+  const TissueId first = votes_.vote(leaf).tissue;
   bool mixed = false, holds_hidden = false;
-  int limit = 0;
+  int limit = demands[first].level_limit;
+  const auto meet = [&](TissueId tissue) {
+    mixed = mixed || tissue != first;
+    limit = std::max(limit, demands[tissue].level_limit);
+  };
   for (const std::uint32_t v : voxels) {
     const Demand& demand = demands[image_.voxels[v]];
-    mixed = mixed || image_.voxels[v] != first;
-    holds_hidden = holds_hidden || demand.absent || (demand.thin && voxels.size() < VoxelVotes::kQuorum);
-    limit = std::max(limit, demand.level_limit);
+    holds_hidden = holds_hidden || demand.absent || (demand.thin && is_small);
+    meet(image_.voxels[v]);
   }
+  if (is_small) std::ranges::for_each(votes_.tissues_at_corners(leaf), meet);
   return (mixed || holds_hidden) && leaf.level < limit;
 }
 
@@ -287,7 +293,6 @@ std::vector<TetRef> LabelLattice::Impl::leaves_to_mend(const FidelityGap& gap) c
       --open[t];
       wanted = true;
     }
-    if (marked.size() == gap.max_leaves) break;
     if (wanted) marked.push_back(leaves_.list()[i].tet);
   }
   return marked;

@@ -47,7 +47,6 @@ struct LabelledLattice {
 struct FidelityGap {
   std::vector<TissueId> wrong;         ///< by voxel: the tissue that its wrong label costs fidelity, 0 where right
   std::vector<std::uint64_t> to_mend;  ///< by tissue: how many of its wrong voxels have to become right
-  std::size_t max_leaves = ~std::size_t{0};  ///< tetrahedra to refine at most, beside those that must follow
 };
 
 /// The lattice over one image, from its first refinement to the last. Every voxel centre of the image belongs to

@@ -271,6 +271,16 @@ Vote VoxelVotes::count_votes(std::span<const std::uint32_t> voxels, const std::a
   return result;
 }
 
+std::array<TissueId, 4> VoxelVotes::tissues_at_corners(TetRef t) const {
+  std::array<TissueId, 4> tissues;
+  const std::array<Vec3, 4> corners = corners_in_voxels(t);
+  for (std::size_t n = 0; n < 4; ++n) {
+    const auto nearest = [&](std::size_t axis) { return static_cast<int>(std::lround(corners[n][axis])); };
+    tissues[n] = image_.at_or_background(nearest(0), nearest(1), nearest(2));
+  }
+  return tissues;
+}
+
 // Trilinear interpolation of the tissues' indicator functions, summed over five points inside.
 TissueId VoxelVotes::interpolated_tissue(const std::array<Vec3, 4>& corners) const {
   constexpr double kIn = 0.55, kOff = 0.15;

@@ -45,6 +45,9 @@ class VoxelVotes {
     return v.pure && (v.count >= kInheritAbove || begin_[level][t.slot] == kInherited);
   }
 
+  /// Tissues of the voxels nearest to the corners of a tetrahedron.
+  std::array<TissueId, 4> tissues_at_corners(TetRef t) const;
+
   /// Votes of the green parts of a leaf with split edges, in the order of green_split().
   std::array<Vote, 4> green_votes(TetRef leaf) const;
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <cstdio>  /*DBG*/
 #include <optional>
 #include <utility>
 
@@ -26,15 +25,16 @@ constexpr int kMaxRetries = 2;
 constexpr double kReserve = 0.08;  // of what may be wrong
 // Lattices that are built anew, for better spacings of the surfaces.
 constexpr int kMaxCorrections = 2;
-// A mesh of fewer elements than this share of the budget leaves room for a finer lattice, for this share of it.
-constexpr double kRoomy = 0.75, kFull = 0.95;
+// Of a budget: a lattice is meant to fill so much of it, one of less leaves room for a finer one, and one of more is
+// not worth thinning out.
+constexpr double kFull = 0.95, kRoomy = 0.75, kFar = 1.3;
+constexpr int kMaxTries = 4;
+// Of the tetrahedra of a lattice about this share is left when the mesh is finished.
+constexpr double kShareLeft = 0.6;
 // Surfaces of tissues of more than kLarge voxels have to lie near their boundary, too: at F = 0.95, the voxels that may
 // be wrong are at most a layer of this share of the largest voxel spacing all over the boundary.
 constexpr std::uint64_t kLarge = 5000;
 constexpr double kLayer = 0.08;
-// Of the tetrahedra of a lattice about this share is left when the mesh is finished.
-constexpr double kShareLeft = 0.5;
-constexpr double kTetsPerLeaf = 10;  // that its refinement adds, with what must follow
 // Of the progress.
 constexpr double kLatticeShare = 0.2;
 
@@ -71,7 +71,10 @@ class Rounds {
     improvement_.gradation = options.deform.gradation > 0 ? options.deform.gradation : improvement_.gradation;
   }
 
+  /// Until every tissue has its fidelity.
   DeformedMesh run();
+  /// As faithful as so many tetrahedra allow.
+  DeformedMesh run_within(std::size_t max_elements);
 
  private:
   static std::vector<double> aims(const TissueImage& image, const std::vector<double>& wanted);
@@ -82,8 +85,6 @@ class Rounds {
   MeshFidelity approach(TissueMesh& mesh) const;
   DeformedMesh finish(TissueMesh mesh, std::size_t target) const;
   bool is_stalled(const MeshFidelity& reached);
-  bool exceeds_budget(const TissueMesh& mesh);
-  DeformedMesh within_budget(TissueMesh mesh);
   std::optional<LabelledLattice> refine(MeshFidelity& reached);
   bool must_retry(const DeformedMesh& finished);
 
@@ -101,8 +102,6 @@ class Rounds {
   Deformer deformer_;
   ImproveOptions improvement_;
   LabelledLattice lattice_;
-  std::optional<DeformedMesh> best_;  // inside the budget
-  std::size_t tets_ = 0;              // of the last mesh, as they will be when it is finished
   double lacked_ = kUnknown;         // by all tissues in the last round
   int round_ = 0, retries_ = 0, corrections_ = 0;
 };
@@ -138,11 +137,7 @@ void Rounds::build() {
 bool Rounds::choose_better(const MeshFidelity& reached) {
   if (!may_refine() || corrections_ == kMaxCorrections) return false;
   ++corrections_;
-  if (options_.max_elements == 0) return sizes_.correct(choice_, reached.tissues);
-  const double room = static_cast<double>(options_.max_elements) / static_cast<double>(tets_);
-  if (kRoomy * room < 1 || lacking(reached.tissues, aim_) == 0) return false;
-  sizes_.scale(1 / std::sqrt(kFull * room));
-  return true;
+  return sizes_.correct(choice_, reached.tissues);
 }
 
 // The rounds share the progress bar; how many there will be is not known.
@@ -178,11 +173,7 @@ bool Rounds::is_stalled(const MeshFidelity& reached) {
 
 std::optional<LabelledLattice> Rounds::refine(MeshFidelity& reached) {
   if (!may_refine() || lacking(reached.tissues, aim_) == 0) return std::nullopt;
-  FidelityGap gap = find_gap(reached, image_, aim_);
-  if (options_.max_elements > 0) {
-    const double room = static_cast<double>(options_.max_elements) - static_cast<double>(tets_);
-    gap.max_leaves = static_cast<std::size_t>(std::max(16.0, room / kShareLeft / kTetsPerLeaf));
-  }
+  const FidelityGap gap = find_gap(reached, image_, aim_);
   ++round_;
   std::optional<LabelledLattice> finer = builder_->refine(gap, part(0, 0));
   stage_done_("lattice");
@@ -201,39 +192,11 @@ bool Rounds::must_retry(const DeformedMesh& finished) {
   return true;
 }
 
-// Whether the mesh would have too many tetrahedra; one that has not, but nearly, is kept.
-bool Rounds::exceeds_budget(const TissueMesh& mesh) {
-  const std::size_t tets = tissue_tets(mesh);
-  tets_ = static_cast<std::size_t>(kShareLeft * static_cast<double>(tets));
-  if (options_.max_elements == 0 || tets <= options_.max_elements) return false;
-  DeformedMesh finished = finish(mesh, 0);
-  tets_ = tissue_tets(finished.mesh);
-  if (tets_ > options_.max_elements) return true;
-  best_ = std::move(finished);
-  return false;
-}
-
-// Of a mesh with its elements thinned out, and the last that had few enough by itself, the more faithful one.
-DeformedMesh Rounds::within_budget(TissueMesh mesh) {
-  // The last flips may add a few.
-  DeformedMesh thinned = finish(std::move(mesh), options_.max_elements - options_.max_elements / 100);
-  const std::size_t tets = tissue_tets(thinned.mesh);
-  const bool fits = tets <= options_.max_elements;
-  if (best_ && (!fits || mean_reached(best_->final.tissues) > mean_reached(thinned.final.tissues)))
-    return std::move(*best_);
-  if (fits) return thinned;
-  throw MeshingFailed("max_elements is " + std::to_string(options_.max_elements) + ", but this image takes about " +
-                      std::to_string(tets) + " tetrahedra at least with this bcc_size");
-}
-
 DeformedMesh Rounds::run() {
-  if (options_.max_elements > 0) sizes_.fit_budget(kFull * static_cast<double>(options_.max_elements));
   build();
   for (;;) {
     TissueMesh mesh = std::move(lattice_.mesh);
     MeshFidelity reached = approach(mesh);
-    /*DBG*/ { std::vector<double> w; std::size_t lackn=0; for (std::size_t t=1;t<aim_.size();++t) if (reached_of(reached.tissues[t])<aim_[t]) ++lackn; std::fprintf(stderr,"round %d root %.3f levels %d s1 %d tets %zu reached1 %.4f aim1 %.4f mean %.4f lacking %.4f n %zu\n",round_,plan_.bcc_size_mm,plan_.levels,plan_.surface_level.empty()?-1:plan_.surface_level[1],tissue_tets(mesh),reached_of(reached.tissues[1]),aim_[1],mean_reached(reached.tissues),lacking(reached.tissues,aim_),lackn); } /*DBG*/
-    if (exceeds_budget(mesh)) return within_budget(std::move(mesh));
     if (choose_better(reached)) {
       ++round_;
       lacked_ = kUnknown;
@@ -252,12 +215,49 @@ DeformedMesh Rounds::run() {
   }
 }
 
+// All spacings become larger or smaller until the finished mesh nearly fills the budget. One of a little more is
+// thinned out to it; of those inside it the most faithful one is the result.
+DeformedMesh Rounds::run_within(std::size_t max_elements) {
+  const auto budget = static_cast<double>(max_elements);
+  sizes_.fit_budget(kFull * budget);
+  double share_left = kShareLeft, least = kUnknown;
+  std::optional<DeformedMesh> best;
+  const auto keep = [&](DeformedMesh mesh) {
+    if (tissue_tets(mesh.mesh) > max_elements) return;
+    if (!best || mean_reached(mesh.final.tissues) > mean_reached(best->final.tissues)) best = std::move(mesh);
+  };
+  for (; round_ < kMaxTries; ++round_) {
+    build();
+    TissueMesh mesh = std::move(lattice_.mesh);
+    const MeshFidelity reached = approach(mesh);
+    const auto tets = static_cast<double>(tissue_tets(mesh));
+    const bool wants_more = lacking(reached.tissues, wanted_) > 0;
+    double filled = share_left * tets / budget;
+    if (filled < kFar && !(filled < kRoomy && wants_more)) {
+      DeformedMesh finished = finish(mesh, 0);
+      const auto left = static_cast<double>(tissue_tets(finished.mesh));
+      share_left = left / tets;
+      filled = left / budget;
+      keep(std::move(finished));
+      // The last flips may add a few.
+      if (filled > 1 && filled < kFar) keep(finish(std::move(mesh), max_elements - max_elements / 100));
+      if (best && !(filled < kRoomy && wants_more)) return std::move(*best);
+    }
+    least = std::min(least, filled * budget);
+    sizes_.scale(std::sqrt(filled / kFull));
+  }
+  if (best) return std::move(*best);
+  throw MeshingFailed("max_elements is " + std::to_string(max_elements) + ", but this image takes about " +
+                      std::to_string(static_cast<std::size_t>(least)) + " tetrahedra at least with this bcc_size");
+}
+
 }  // namespace
 
 DeformedMesh refine_and_deform(const TissueImage& image, const LatticePlan& plan, const SurfaceSizes::Range& range,
                                const Options& options, const Stage& stage,
                                const std::function<void(std::string)>& stage_done) {
-  return Rounds(image, plan, range, options, stage, stage_done).run();
+  Rounds rounds(image, plan, range, options, stage, stage_done);
+  return options.lattice.max_elements > 0 ? rounds.run_within(options.lattice.max_elements) : rounds.run();
 }
 
 }  // namespace anatomesh
