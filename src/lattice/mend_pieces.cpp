@@ -404,7 +404,7 @@ double PieceMender::path_cost(TetId t, TissueId tissue) const {
 // Dijkstra's algorithm from a piece to the nearest other piece of the same component.
 void PieceMender::join_piece(std::uint32_t piece, const std::vector<TetId>& tets, DisjointSets& joined) {
   constexpr double kReach = 40;
-  constexpr std::size_t kMaxVisited = 20000;
+  constexpr std::size_t kMaxVisited = 100000;
   const TissueId tissue = pieces_.list[piece].tissue;
   const std::uint32_t component = main_[piece];
   struct Step {

@@ -50,10 +50,11 @@ void expect_same_topology(const TissueMesh& mesh, const TissueMesh& before) {
 /// An image, its field and its lattice.
 struct Case {
   explicit Case(const LabelImage& labels)
-      : image(make_tissue_image(labels)), field(image), mesh(testing::lattice_of(image)) {}
+      : image(make_tissue_image(labels)), field(image), mesh(testing::lattice_of(image)), outward_mm(image.labels.size(), 0) {}
   TissueImage image;
   SurfaceField field;
   TissueMesh mesh;
+  std::vector<double> outward_mm;
 
   std::size_t coarsen(double surface_tolerance_mm) {
     MeshEditor editor(mesh);
@@ -66,7 +67,7 @@ struct Case {
     return gone;
   }
   ImproveReport improve(const ImproveOptions& options = {}) {
-    return anatomesh::improve(mesh, field, kBounds, options, testing::quiet_stage());
+    return anatomesh::improve(mesh, field, kBounds, options, outward_mm, testing::quiet_stage());
   }
 };
 
@@ -326,7 +327,7 @@ TEST(Improve, StopsWhenAskedTo) {
                             if (fraction > 0.3) source.request_stop();
                           },
                           source.get_token()};
-  EXPECT_THROW(improve(c.mesh, c.field, kBounds, {}, Stage(progress, "improve", 0, 1)), Cancelled);
+  EXPECT_THROW(improve(c.mesh, c.field, kBounds, {}, c.outward_mm, Stage(progress, "improve", 0, 1)), Cancelled);
   expect_sound(c.mesh);
 }
 

@@ -116,7 +116,7 @@ TEST(CheckOptions, SmallestSizeIsAtMostTheLargest) {
 
 TEST(CheckOptions, SmallestSizeIsAtMostTheLargestByDefault) {
   Options options;
-  options.lattice.min_size_mm = 8.1;
+  options.lattice.min_size_mm = 16.1;
   EXPECT_TRUE(says(message_of<InvalidOption>([&] { image_to_mesh(testing::one_voxel(), options); }), "min_size_mm"));
 }
 
