@@ -131,10 +131,14 @@ void add_kind_option(CLI::App& command, std::map<Label, TissueKind>& kinds) {
 
 void add_lattice_options(CLI::App& command, MeshRequest& request) {
   LatticeOptions& lattice = request.options.lattice;
-  add_number(command, "--bcc-size", "MM", "spacing of the coarsest lattice [8 times the mean voxel spacing]",
-             lattice.bcc_size_mm);
+  add_number(
+      command, "--bcc-size", "MM",
+      "spacing of the coarsest lattice [8 to 16 times the mean voxel spacing, whatever suits the surfaces; 8 times "
+      "with --fidelity-stage lattice]",
+      lattice.bcc_size_mm);
   add_number(command, "--min-size", "MM",
-             "smallest lattice spacing that fidelity may ask for [an eighth of --bcc-size, a quarter with "
+             "smallest lattice spacing that fidelity may ask for [an eighth of --bcc-size, or half the mean voxel "
+             "spacing without it; a quarter of --bcc-size with "
              "--fidelity-stage lattice]",
              lattice.min_size_mm);
   add_parsed(command, "--fidelity", "F", "fidelity that each tissue is refined for, 0 < F <= 1 [0.95]",

@@ -25,9 +25,12 @@ enum class FidelityStage { lattice, final };
 
 /// Stage "lattice": the body-centred cubic lattice and its refinement.
 struct LatticeOptions {
-  double bcc_size_mm = 0;  ///< spacing of the coarsest lattice, > 0; 0: 8 times the mean voxel spacing
-  /// Smallest lattice spacing that fidelity may ask for, > 0; 0: an eighth of bcc_size, a quarter for a fidelity on the
-  /// lattice. There a tissue that is still 0.15 short of its fidelity gets half of it.
+  /// Spacing of the coarsest lattice, > 0; 0: the one from 8 to 16 times the mean voxel spacing that suits the
+  /// surfaces best, 8 times for a fidelity on the lattice.
+  double bcc_size_mm = 0;
+  /// Smallest lattice spacing that fidelity may ask for, > 0; 0: an eighth of bcc_size, half the mean voxel spacing
+  /// where bcc_size is 0, too, and a quarter of bcc_size for a fidelity on the lattice. There a tissue that is still
+  /// 0.15 short of its fidelity gets half of it.
   double min_size_mm = 0;
   double fidelity = 0.95;                  ///< 0 < F <= 1: F1 and F2 that each tissue is refined for
   std::map<Label, double> fidelity_label;  ///< F of single tissues, in place of the above

@@ -74,8 +74,8 @@ void Improver::smooth(int times, double begin, double end) {
     improve_all(editor);
     mesh_ = editor.result();
     const MeshTopology topology = make_topology(mesh_);
-    settle(mesh_, topology, AngleGuard(mesh_, topology, bounds_), field_, kSettleSweeps,
-           outward_mm_, stage_.part("settle", begin + (end - begin) * n / times, begin + (end - begin) * (n + 1) / times));
+    settle(mesh_, topology, AngleGuard(mesh_, topology, bounds_), field_, kSettleSweeps, outward_mm_,
+           stage_.part("settle", begin + (end - begin) * n / times, begin + (end - begin) * (n + 1) / times));
   }
 }
 

@@ -50,6 +50,8 @@ void require_label(const TissueImage& tissues, Label label, const char* option) 
                       ", which is not among the labels to mesh");
 }
 
+double mean_of(Vec3 spacing_mm) { return (spacing_mm.x + spacing_mm.y + spacing_mm.z) / 3; }
+
 void require_ordered_sizes(const LatticeOptions& l) {
   if (l.min_size_mm <= l.bcc_size_mm) return;
   throw InvalidOption("min_size_mm is " + text(l.min_size_mm) + "; it must be at most bcc_size_mm, " +
@@ -118,12 +120,15 @@ void check_image(const LabelImage& image) {
 
 Options with_sizes_filled_in(const Options& options, const LabelImage& image) {
   Options filled = options;
-  const Vec3 s = image.spacing_mm;
-  if (filled.lattice.bcc_size_mm == 0) filled.lattice.bcc_size_mm = 16 * (s.x + s.y + s.z) / 3;
-  if (filled.lattice.min_size_mm == 0)
-    filled.lattice.min_size_mm =
-        filled.lattice.bcc_size_mm / (filled.lattice.fidelity_stage == FidelityStage::final ? 32 : 4);
-  require_ordered_sizes(filled.lattice);
+  LatticeOptions& lattice = filled.lattice;
+  const double voxel_mm = mean_of(image.spacing_mm);
+  const bool is_final = lattice.fidelity_stage == FidelityStage::final;
+  const bool root_is_given = lattice.bcc_size_mm > 0;
+  if (!root_is_given) lattice.bcc_size_mm = (is_final ? 16 : 8) * voxel_mm;
+  if (lattice.min_size_mm == 0) {
+    lattice.min_size_mm = !is_final ? lattice.bcc_size_mm / 4 : !root_is_given ? voxel_mm / 2 : lattice.bcc_size_mm / 8;
+  }
+  require_ordered_sizes(lattice);
   return filled;
 }
 
@@ -140,14 +145,17 @@ void check_memory(const Options& options, const LabelImage& image, const TissueI
   // The coarsest lattice covers the whole crop.
   constexpr double kTetsPerSquare = 12, kBytesPerTet = 700, kBytesPerVoxel = 9, kBytesPerCell = 1200;
   constexpr double kGib = 1024.0 * 1024 * 1024;
-  // A fidelity of the final mesh takes its smallest size in a few places only.
-  const double h = options.lattice.min_size_mm * (options.lattice.fidelity_stage == FidelityStage::final ? 2 : 1);
+  const LatticeOptions& lattice = options.lattice;
+  const double voxel_mm = mean_of(image.spacing_mm);
+  double h = lattice.min_size_mm;
+  // A fidelity of the final mesh takes its smallest size, and most often any below two voxels, in a few places only.
+  if (lattice.fidelity_stage == FidelityStage::final) h *= 2;
+  if (lattice.fidelity_stage == FidelityStage::final && h >= voxel_mm) h = std::max(h, 2 * voxel_mm);
   const std::vector<double> areas = boundary_areas_mm2(tissues);
   const double interfaces_mm2 = 0.5 * std::accumulate(areas.begin(), areas.end(), 0.0);
   const double tets = kTetsPerSquare * interfaces_mm2 / (h * h);
   double cells = 1;
-  for (std::size_t a = 0; a < 3; ++a)
-    cells *= tissues.size[a] * tissues.spacing_mm[a] / options.lattice.bcc_size_mm + 3;
+  for (std::size_t a = 0; a < 3; ++a) cells *= tissues.size[a] * tissues.spacing_mm[a] / lattice.bcc_size_mm + 3;
   const double needed_gib =
       (tets * kBytesPerTet + cells * kBytesPerCell + static_cast<double>(tissues.voxels.size()) * kBytesPerVoxel) /
       kGib;

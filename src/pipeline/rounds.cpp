@@ -102,7 +102,7 @@ class Rounds {
   Deformer deformer_;
   ImproveOptions improvement_;
   LabelledLattice lattice_;
-  double lacked_ = kUnknown;         // by all tissues in the last round
+  double lacked_ = kUnknown;  // by all tissues in the last round
   int round_ = 0, retries_ = 0, corrections_ = 0;
 };
 

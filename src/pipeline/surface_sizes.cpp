@@ -21,7 +21,7 @@ constexpr double kTolerance = 1.04;
 // One measurement says little about spacings farther away than this.
 constexpr double kFinest = 0.4, kCoarsest = 1.5;
 // Another lattice pays where so much of what a tissue asks for is lacking, or so much of the tetrahedra can be saved.
-constexpr double kLacking = 1.15, kSaving = 0.5;
+constexpr double kLacking = 1.15, kSaving = 0.4;
 // A tissue that still has this share of its wrong voxels after one correction is not mended by another.
 constexpr double kGains = 0.85;
 constexpr int kRootsToTry = 6;  // to each halving

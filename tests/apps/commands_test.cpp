@@ -119,7 +119,7 @@ TEST_F(MeshAndCheck, any_number_of_threads_writes_the_same_bytes) {
 TEST_F(MeshAndCheck, the_report_holds_options_and_measures) {
   const fs::path report = folder_ / "report.json";
   ASSERT_EQ(mesh({"--report", report, "--fidelity-label", "70000=0.97", "--young", "3=500", "--tissue", "3=ventricle",
-                  "--iterations", "3"})
+                  "--iterations", "3", "--bcc-size", "8"})
                 .status,
             0);
   const Json json = Json::parse(read_file(report));

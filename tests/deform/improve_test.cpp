@@ -50,7 +50,10 @@ void expect_same_topology(const TissueMesh& mesh, const TissueMesh& before) {
 /// An image, its field and its lattice.
 struct Case {
   explicit Case(const LabelImage& labels)
-      : image(make_tissue_image(labels)), field(image), mesh(testing::lattice_of(image)), outward_mm(image.labels.size(), 0) {}
+      : image(make_tissue_image(labels)),
+        field(image),
+        mesh(testing::lattice_of(image)),
+        outward_mm(image.labels.size(), 0) {}
   TissueImage image;
   SurfaceField field;
   TissueMesh mesh;

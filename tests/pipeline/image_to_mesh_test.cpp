@@ -186,9 +186,26 @@ TEST(Cancel, AtEveryReport) {
 }
 
 TEST(Options, SizesAreFilledInFromTheSpacing) {
-  const Result result = image_to_mesh(testing::anisotropic(testing::sphere()));
-  EXPECT_DOUBLE_EQ(result.options.lattice.bcc_size_mm, 8 * (0.7 + 1.1 + 2.5) / 3);
-  EXPECT_DOUBLE_EQ(result.options.lattice.min_size_mm, (0.7 + 1.1 + 2.5) / 3);
+  const double voxel_mm = (0.7 + 1.1 + 2.5) / 3;
+  const LabelImage image = testing::anisotropic(testing::sphere());
+  const LatticeOptions final = image_to_mesh(image).options.lattice;
+  EXPECT_GT(final.bcc_size_mm, 8 * voxel_mm);
+  EXPECT_LE(final.bcc_size_mm, 16 * voxel_mm);
+  EXPECT_DOUBLE_EQ(final.min_size_mm, voxel_mm / 2);
+
+  Options options;
+  options.lattice.fidelity_stage = FidelityStage::lattice;
+  const LatticeOptions lattice = image_to_mesh(image, options).options.lattice;
+  EXPECT_DOUBLE_EQ(lattice.bcc_size_mm, 8 * voxel_mm);
+  EXPECT_DOUBLE_EQ(lattice.min_size_mm, 2 * voxel_mm);
+}
+
+TEST(Options, AGivenRootIsKept) {
+  Options options;
+  options.lattice.bcc_size_mm = 5.3;
+  const LatticeOptions used = image_to_mesh(testing::sphere(), options).options.lattice;
+  EXPECT_EQ(used.bcc_size_mm, 5.3);
+  EXPECT_DOUBLE_EQ(used.min_size_mm, 5.3 / 8);
 }
 
 TEST(Options, WithoutIterationsTheLatticeIsKept) {
