@@ -92,6 +92,7 @@ class LabelLattice::Impl {
   /// Returns whether anything was refined.
   bool refine_until_faithful(const Stage& stage);
   std::vector<TetRef> leaves_to_mend(const FidelityGap& gap) const;
+  std::vector<TetRef> leaves_that_miss(const std::vector<char>& missed) const;
   LabelledLattice make_whole(const Stage& stage);
   MendPlan mend_plan() const { return {place_.unit_mm, deepest_, !plan_.allow_non_manifold}; }
   void raise_targets(const std::vector<Fidelity>& reached);
@@ -298,12 +299,44 @@ std::vector<TetRef> LabelLattice::Impl::leaves_to_mend(const FidelityGap& gap) c
   return marked;
 }
 
+// The leaves with a voxel among those missed and another label than that has.
+std::vector<TetRef> LabelLattice::Impl::leaves_that_miss(const std::vector<char>& missed) const {
+  constexpr double kFineEnough = 1.5;  // voxels
+  const Vec3 s = image_.spacing_mm;
+  const double fine_mm = kFineEnough * (s.x + s.y + s.z) / 3;
+  std::vector<char> misses(leaves_.list().size());
+  parallel_for(misses.size(), [&](std::size_t i) {
+    const TetRef leaf = leaves_.list()[i].tet;
+    if (leaf.level >= plan_.levels || std::ldexp(plan_.bcc_size_mm, -leaf.level) <= fine_mm) return;
+    const TissueId tissue = votes_.vote(leaf).tissue;
+    misses[i] = std::ranges::any_of(votes_.voxels(leaf),
+                                    [&](std::uint32_t v) { return missed[v] && image_.voxels[v] != tissue; });
+  });
+  std::vector<TetRef> leaves;
+  for (std::size_t i = 0; i < misses.size(); ++i) {
+    if (misses[i]) leaves.push_back(leaves_.list()[i].tet);
+  }
+  return leaves;
+}
+
 std::optional<LabelledLattice> LabelLattice::Impl::refine(const FidelityGap& gap, const Stage& stage) {
-  const std::vector<TetRef> marked = leaves_to_mend(gap);
-  if (marked.empty()) return std::nullopt;
-  votes_.descend(lattice_.refine(marked));
-  leaves_.collect(NewLabels::vote);
-  stage.check_cancelled();
+  std::vector<char> missed(gap.missed.empty() ? 0 : image_.voxels.size(), 0);
+  for (const std::uint32_t v : gap.missed) missed[v] = 1;
+  std::vector<TetRef> marked = leaves_to_mend(gap);
+  bool refined = false;
+  for (;;) {
+    if (!missed.empty()) {
+      const std::vector<TetRef> more = leaves_that_miss(missed);
+      marked.insert(marked.end(), more.begin(), more.end());
+    }
+    if (marked.empty()) break;
+    stage.check_cancelled();
+    votes_.descend(lattice_.refine(marked));
+    leaves_.collect(NewLabels::vote);
+    refined = true;
+    marked.clear();
+  }
+  if (!refined) return std::nullopt;
   clean_leaves(votes_, leaves_, mesher_);
   return make_whole(stage);
 }

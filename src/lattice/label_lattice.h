@@ -47,6 +47,7 @@ struct LabelledLattice {
 struct FidelityGap {
   std::vector<TissueId> wrong;         ///< by voxel: the tissue that its wrong label costs fidelity, 0 where right
   std::vector<std::uint64_t> to_mend;  ///< by tissue: how many of its wrong voxels have to become right
+  std::vector<std::uint32_t> missed;   ///< voxels whose label the lattice itself is to have, offsets in the image
 };
 
 /// The lattice over one image, from its first refinement to the last. Every voxel centre of the image belongs to
@@ -68,7 +69,8 @@ class LabelLattice {
   LabelledLattice build(const Stage& stage);
 
   /// Refines the tetrahedra that hold the most wrong voxels, as many as it takes to hold those that have to be mended,
-  /// and labels the lattice again. Nothing when all of them are of the smallest size. Throws Cancelled.
+  /// and those around missed voxels until they have their label, and labels the lattice again. Nothing when all of them
+  /// are of the smallest size. Throws Cancelled.
   std::optional<LabelledLattice> refine(const FidelityGap& gap, const Stage& stage);
 
  private:

@@ -1,6 +1,7 @@
 #include "pipeline/final_fidelity.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -72,6 +73,54 @@ MeshFidelity measure_fidelity(const TissueMesh& mesh, const TissueImage& image, 
     result.inside[t].hits = result.tissues[t].hits;
   }
   return result;
+}
+
+FarVoxels find_far_voxels(const MeshFidelity& reached, const TissueImage& image, const std::vector<char>& judged) {
+  const std::vector<TissueId>& in_mesh = reached.tissue_in_mesh;
+  const Vec3 s = image.spacing_mm;
+  const double far_mm = std::max({s.x, s.y, s.z});
+  std::array<int, 3> reach;
+  std::array<std::size_t, 3> step = {1, 1, 1};
+  for (std::size_t a = 0; a < 3; ++a) reach[a] = static_cast<int>(std::lround(far_mm / s[a]));
+  for (std::size_t a = 1; a < 3; ++a) step[a] = step[a - 1] * static_cast<std::size_t>(image.size[a - 1]);
+  const auto is_far = [&](std::array<int, 3> at) {
+    const std::size_t v = image.offset(at[0], at[1], at[2]);
+    const TissueId got = in_mesh[v], asked = image.voxels[v];
+    if (got == asked || !(judged[asked] || judged[got])) return false;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const auto [begin, end] = image.inside(a);
+      if (at[a] - reach[a] < begin || at[a] + reach[a] >= end) return false;
+      const std::size_t away = step[a] * static_cast<std::size_t>(reach[a]);
+      if (in_mesh[v - away] != got || in_mesh[v + away] != got) return false;
+    }
+    return true;
+  };
+  std::vector<std::vector<std::uint32_t>> found(static_cast<std::size_t>(image.size[2]));
+  parallel_for(
+      found.size(),
+      [&](std::size_t slice) {
+        const auto k = static_cast<int>(slice);
+        for (int j = 0; j < image.size[1]; ++j) {
+          for (int i = 0; i < image.size[0]; ++i) {
+            if (is_far({i, j, k})) found[slice].push_back(static_cast<std::uint32_t>(image.offset(i, j, k)));
+          }
+        }
+      },
+      1);
+  FarVoxels far;
+  far.of_tissue.assign(image.labels.size(), 0);
+  far.others = reached.tissues;
+  for (const auto& part : found) {
+    far.voxels.insert(far.voxels.end(), part.begin(), part.end());
+    for (const std::uint32_t v : part) {
+      const TissueId asked = image.voxels[v], got = in_mesh[v];
+      ++far.of_tissue[asked];
+      ++far.of_tissue[got];
+      --far.others[asked].voxels;
+      --far.others[got].in_tets;
+    }
+  }
+  return far;
 }
 
 FidelityGap find_gap(MeshFidelity& reached, const TissueImage& image, std::span<const double> wanted) {

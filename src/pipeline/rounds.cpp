@@ -35,6 +35,10 @@ constexpr double kShareLeft = 0.6;
 // be wrong are at most a layer of this share of the largest voxel spacing all over the boundary.
 constexpr std::uint64_t kLarge = 5000;
 constexpr double kLayer = 0.08;
+// Voxels far from the mesh's surfaces are cared for where there is one of them to so many on the tissue's boundary, in
+// so many rounds.
+constexpr double kMissed = 0.03;
+constexpr int kMaxMissedRounds = 2;
 // Of the progress.
 constexpr double kLatticeShare = 0.2;
 
@@ -67,6 +71,9 @@ class Rounds {
         stage_(stage),
         stage_done_(stage_done),
         deformer_(image, options.deform, stage) {
+    area_mm2_ = boundary_areas_mm2(image);
+    for (const std::uint64_t voxels : image.counts) is_large_.push_back(voxels > kLarge);
+    is_large_[0] = 0;
     improvement_.sizes = plan.sizes;
     improvement_.gradation = options.deform.gradation > 0 ? options.deform.gradation : improvement_.gradation;
   }
@@ -77,15 +84,21 @@ class Rounds {
   DeformedMesh run_within(std::size_t max_elements);
 
  private:
+  // What a deformed mesh has reached, and the voxels that it misses altogether.
+  struct Reached {
+    MeshFidelity mesh;
+    FarVoxels far;
+  };
   static std::vector<double> aims(const TissueImage& image, const std::vector<double>& wanted);
   void build();
-  bool choose_better(const MeshFidelity& reached);
+  bool choose_better(const Reached& reached);
   bool may_refine() const { return options_.fidelity_stage == FidelityStage::final && round_ < kMaxRounds; }
   Stage part(double from, double to) const;
-  MeshFidelity approach(TissueMesh& mesh) const;
+  Reached approach(TissueMesh& mesh) const;
+  bool misses_much(const FarVoxels& far) const;
   DeformedMesh finish(TissueMesh mesh, std::size_t target) const;
-  bool is_stalled(const MeshFidelity& reached);
-  std::optional<LabelledLattice> refine(MeshFidelity& reached);
+  bool is_stalled(const Reached& reached);
+  std::optional<LabelledLattice> refine(Reached& reached, bool for_fidelity);
   bool must_retry(const DeformedMesh& finished);
 
   const TissueImage& image_;
@@ -102,8 +115,10 @@ class Rounds {
   Deformer deformer_;
   ImproveOptions improvement_;
   LabelledLattice lattice_;
-  double lacked_ = kUnknown;  // by all tissues in the last round
-  int round_ = 0, retries_ = 0, corrections_ = 0;
+  std::vector<double> area_mm2_;  // by tissue
+  std::vector<char> is_large_;    // by tissue
+  double lacked_ = kUnknown;      // by all tissues in the last round
+  int round_ = 0, retries_ = 0, corrections_ = 0, missed_rounds_ = 0;
 };
 
 std::vector<double> Rounds::aims(const TissueImage& image, const std::vector<double>& wanted) {
@@ -134,10 +149,10 @@ void Rounds::build() {
 }
 
 // Whether another lattice with other spacings of the surfaces would be better.
-bool Rounds::choose_better(const MeshFidelity& reached) {
+bool Rounds::choose_better(const Reached& reached) {
   if (!may_refine() || corrections_ == kMaxCorrections) return false;
   ++corrections_;
-  return sizes_.correct(choice_, reached.tissues);
+  return sizes_.correct(choice_, reached.far.others);
 }
 
 // The rounds share the progress bar; how many there will be is not known.
@@ -146,10 +161,12 @@ Stage Rounds::part(double from, double to) const {
   return stage_.part("deform", begin(round_ + from), begin(round_ + to));
 }
 
-MeshFidelity Rounds::approach(TissueMesh& mesh) const {
+Rounds::Reached Rounds::approach(TissueMesh& mesh) const {
   const Stage stage = part(0, 0.5);
   deformer_.approach(mesh, stage);
-  MeshFidelity reached = measure_fidelity(mesh, image_, stage);
+  Reached reached;
+  reached.mesh = measure_fidelity(mesh, image_, stage);
+  reached.far = find_far_voxels(reached.mesh, image_, is_large_);
   stage_done_("deform");
   return reached;
 }
@@ -164,16 +181,33 @@ DeformedMesh Rounds::finish(TissueMesh mesh, std::size_t target) const {
   return {std::move(mesh), lattice_.fidelity, std::move(reached), plan_.bcc_size_mm};
 }
 
-bool Rounds::is_stalled(const MeshFidelity& reached) {
-  const double lacks = lacking(reached.tissues, aim_);
+// Whether so much of a tissue's boundary lies far from the mesh's that it shows in the distances.
+bool Rounds::misses_much(const FarVoxels& far) const {
+  const Vec3 s = image_.spacing_mm;
+  const double face_mm2 = std::cbrt(s.x * s.y * s.z) * std::cbrt(s.x * s.y * s.z);
+  for (std::size_t t = 1; t < area_mm2_.size(); ++t) {
+    if (is_large_[t] && static_cast<double>(far.of_tissue[t]) * face_mm2 > kMissed * area_mm2_[t]) return true;
+  }
+  return false;
+}
+
+bool Rounds::is_stalled(const Reached& reached) {
+  const double lacks = lacking(reached.mesh.tissues, aim_);
   const bool stalled = lacks > kWorthwhile * lacked_;
   lacked_ = lacks;
   return stalled;
 }
 
-std::optional<LabelledLattice> Rounds::refine(MeshFidelity& reached) {
-  if (!may_refine() || lacking(reached.tissues, aim_) == 0) return std::nullopt;
-  const FidelityGap gap = find_gap(reached, image_, aim_);
+std::optional<LabelledLattice> Rounds::refine(Reached& reached, bool for_fidelity) {
+  if (!may_refine()) return std::nullopt;
+  const bool missing = missed_rounds_ < kMaxMissedRounds && misses_much(reached.far);
+  for_fidelity = for_fidelity && lacking(reached.mesh.tissues, aim_) > 0;
+  if (!missing && !for_fidelity) return std::nullopt;
+  FidelityGap gap = find_gap(reached.mesh, image_, for_fidelity ? aim_ : std::vector<double>(aim_.size(), 0));
+  if (missing) {
+    ++missed_rounds_;
+    gap.missed = std::move(reached.far.voxels);
+  }
   ++round_;
   std::optional<LabelledLattice> finer = builder_->refine(gap, part(0, 0));
   stage_done_("lattice");
@@ -196,20 +230,24 @@ DeformedMesh Rounds::run() {
   build();
   for (;;) {
     TissueMesh mesh = std::move(lattice_.mesh);
-    MeshFidelity reached = approach(mesh);
+    Reached reached = approach(mesh);
     if (choose_better(reached)) {
       ++round_;
       lacked_ = kUnknown;
       build();
       continue;
     }
-    std::optional<LabelledLattice> finer;
     const bool stalled = is_stalled(reached);
-    if (!stalled) finer = refine(reached);
+    std::optional<LabelledLattice> finer = refine(reached, !stalled);
     if (!finer) {
       DeformedMesh finished = finish(std::move(mesh), 0);
-      if (!stalled && must_retry(finished)) finer = refine(finished.final);
-      if (!finer) return finished;
+      if (stalled || !must_retry(finished)) return finished;
+      reached.mesh = std::move(finished.final);
+      finer = refine(reached, true);
+      if (!finer) {
+        finished.final = std::move(reached.mesh);
+        return finished;
+      }
     }
     lattice_ = std::move(*finer);
   }
@@ -226,12 +264,12 @@ DeformedMesh Rounds::run_within(std::size_t max_elements) {
     if (tissue_tets(mesh.mesh) > max_elements) return;
     if (!best || mean_reached(mesh.final.tissues) > mean_reached(best->final.tissues)) best = std::move(mesh);
   };
-  for (; round_ < kMaxTries; ++round_) {
+  for (int n = 0; n < kMaxTries; ++n, ++round_) {
     build();
     TissueMesh mesh = std::move(lattice_.mesh);
-    const MeshFidelity reached = approach(mesh);
+    const Reached reached = approach(mesh);
     const auto tets = static_cast<double>(tissue_tets(mesh));
-    const bool wants_more = lacking(reached.tissues, wanted_) > 0;
+    const bool wants_more = lacking(reached.mesh.tissues, wanted_) > 0;
     double filled = share_left * tets / budget;
     if (filled < kFar && !(filled < kRoomy && wants_more)) {
       DeformedMesh finished = finish(mesh, 0);

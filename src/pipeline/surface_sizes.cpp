@@ -19,7 +19,7 @@ constexpr double kTetsPerSquare = 6;
 // A spacing may be that much larger than asked.
 constexpr double kTolerance = 1.04;
 // One measurement says little about spacings farther away than this.
-constexpr double kFinest = 0.4, kCoarsest = 1.5;
+constexpr double kFinest = 0.4, kCoarsest = 2;
 // Another lattice pays where so much of what a tissue asks for is lacking, or so much of the tetrahedra can be saved.
 constexpr double kLacking = 1.15, kSaving = 0.4;
 // A tissue that still has this share of its wrong voxels after one correction is not mended by another.
@@ -106,6 +106,7 @@ SurfaceSizes::Choice SurfaceSizes::choose() const {
 }
 
 bool SurfaceSizes::correct(const Choice& used, std::span<const Fidelity> reached) {
+  const std::vector<double> before = size_mm_;
   bool lacks = false;
   for (std::size_t t = 1; t < size_mm_.size(); ++t) {
     const double wrong = std::max(1e-6, 1 - std::min(reached[t].f1(), reached[t].f2()));
@@ -115,7 +116,9 @@ bool SurfaceSizes::correct(const Choice& used, std::span<const Fidelity> reached
     last_wrong_[t] = wrong;
     size_mm_[t] = size * std::clamp(std::pow(wrong_[t] / wrong, 1 / kPower), kFinest, kCoarsest);
   }
-  return lacks || cost(choose()) < kSaving * cost(used);
+  if (cost(choose()) < kSaving * cost(used)) return true;
+  for (std::size_t t = 1; t < size_mm_.size(); ++t) size_mm_[t] = std::min(size_mm_[t], before[t]);
+  return lacks;
 }
 
 }  // namespace anatomesh

@@ -70,7 +70,7 @@ TEST(SurfaceSizes, NothingIsBuiltAnewForALittle) {
 }
 
 TEST(SurfaceSizes, ManyTetrahedraMayBeSaved) {
-  OneTissue c(0.9);
+  OneTissue c(0.95);
   const SurfaceSizes::Choice first = c.sizes.choose();
   EXPECT_TRUE(c.sizes.correct(first, std::vector<Fidelity>{{}, fidelity_of(0.999)}));
   EXPECT_GT(c.size(), size_of(first, 1));
@@ -84,7 +84,7 @@ TEST(SurfaceSizes, WhatHasNotHelpedIsNotTriedAgain) {
 
 TEST(SurfaceSizes, ABudgetMakesThemLarger) {
   double last = 0;
-  for (const double tets : {1e5, 2e4, 5e3}) {
+  for (const double tets : {1.5e4, 5e3, 1.5e3}) {
     OneTissue c(1);
     c.sizes.fit_budget(tets);
     EXPECT_GT(c.size(), last) << tets;
