@@ -151,8 +151,9 @@ void Rounds::build() {
 // Whether another lattice with other spacings of the surfaces would be better.
 bool Rounds::choose_better(const Reached& reached) {
   if (!may_refine() || corrections_ == kMaxCorrections) return false;
-  ++corrections_;
-  return sizes_.correct(choice_, reached.far.others);
+  const bool better = sizes_.correct(choice_, reached.far.others);
+  corrections_ = better ? corrections_ + 1 : kMaxCorrections;
+  return better;
 }
 
 // The rounds share the progress bar; how many there will be is not known.
@@ -271,7 +272,10 @@ DeformedMesh Rounds::run_within(std::size_t max_elements) {
     const auto tets = static_cast<double>(tissue_tets(mesh));
     const bool wants_more = lacking(reached.mesh.tissues, wanted_) > 0;
     double filled = share_left * tets / budget;
-    if (filled < kFar && !(filled < kRoomy && wants_more)) {
+    sizes_.scale(std::sqrt(filled / kFull));
+    const bool is_last = n + 1 == kMaxTries || sizes_.choose() == choice_;
+    if (is_last || (filled < kFar && !(filled < kRoomy && wants_more))) {
+      sizes_.scale(std::sqrt(kFull / filled));
       DeformedMesh finished = finish(mesh, 0);
       const auto left = static_cast<double>(tissue_tets(finished.mesh));
       share_left = left / tets;
@@ -279,10 +283,11 @@ DeformedMesh Rounds::run_within(std::size_t max_elements) {
       keep(std::move(finished));
       // The last flips may add a few.
       if (filled > 1 && filled < kFar) keep(finish(std::move(mesh), max_elements - max_elements / 100));
-      if (best && !(filled < kRoomy && wants_more)) return std::move(*best);
+      if (best && (is_last || !(filled < kRoomy && wants_more))) break;
+      sizes_.scale(std::sqrt(filled / kFull));
     }
     least = std::min(least, filled * budget);
-    sizes_.scale(std::sqrt(filled / kFull));
+    if (is_last) break;
   }
   if (best) return std::move(*best);
   throw MeshingFailed("max_elements is " + std::to_string(max_elements) + ", but this image takes about " +

@@ -28,6 +28,7 @@ class SurfaceSizes {
     double root_mm = 0;
     int levels = 0;                  ///< to the smallest spacing
     std::vector<int> surface_level;  ///< by tissue, [0] unused
+    bool operator==(const Choice&) const = default;
   };
 
   /// For a fidelity by tissue, [0] unused; 1: as fine as may be.

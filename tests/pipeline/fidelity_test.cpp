@@ -69,6 +69,18 @@ std::optional<double> fidelity_within(const LabelImage& image, std::uint64_t max
   }
 }
 
+TEST(MaxElements, MoreThanTheImageTakesAreNotUsed) {
+  Options options;
+  options.lattice.fidelity = 1;
+  options.lattice.max_elements = 100'000'000;
+  const LabelImage image = testing::sphere(4);
+  const Result result = image_to_mesh(image, options);
+  testing::expect_valid(image, result);
+  testing::expect_complete(image, result);
+  EXPECT_LT(result.mesh.tets.size(), 1'000'000u);
+  EXPECT_GT(mean_fidelity(result), 0.9);
+}
+
 TEST(MaxElements, AreNeverExceededAndMoreAreNoWorse) {
   constexpr double kLittle = 0.01;
   for (const LabelImage& image : {testing::nested_spheres(), testing::vessel_tree(), testing::random_blobs(5)}) {
