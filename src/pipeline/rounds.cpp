@@ -144,7 +144,7 @@ void Rounds::build() {
     for (double& f : plan_.fidelity) f *= kFirstShare;
   }
   builder_.emplace(image_, plan_);
-  lattice_ = builder_->build(stage_.part("lattice", 0, kLatticeShare));
+  lattice_ = builder_->build(round_ == 0 ? stage_.part("lattice", 0, kLatticeShare) : part(0, 0));
   stage_done_("lattice");
 }
 
