@@ -92,7 +92,7 @@ class LabelLattice::Impl {
   /// Returns whether anything was refined.
   bool refine_until_faithful(const Stage& stage);
   std::vector<TetRef> leaves_to_mend(const FidelityGap& gap) const;
-  std::vector<TetRef> leaves_that_miss(const std::vector<char>& missed) const;
+  std::vector<TetRef> leaves_that_miss(const std::vector<char>& missed, double fine_mm) const;
   LabelledLattice make_whole(const Stage& stage);
   MendPlan mend_plan() const { return {place_.unit_mm, deepest_, !plan_.allow_non_manifold}; }
   void raise_targets(const std::vector<Fidelity>& reached);
@@ -299,11 +299,8 @@ std::vector<TetRef> LabelLattice::Impl::leaves_to_mend(const FidelityGap& gap) c
   return marked;
 }
 
-// The leaves with a voxel among those missed and another label than that has.
-std::vector<TetRef> LabelLattice::Impl::leaves_that_miss(const std::vector<char>& missed) const {
-  constexpr double kFineEnough = 1.5;  // voxels
-  const Vec3 s = image_.spacing_mm;
-  const double fine_mm = kFineEnough * (s.x + s.y + s.z) / 3;
+// The leaves with a voxel among those missed and another label than that has, larger than it takes to have it.
+std::vector<TetRef> LabelLattice::Impl::leaves_that_miss(const std::vector<char>& missed, double fine_mm) const {
   std::vector<char> misses(leaves_.list().size());
   parallel_for(misses.size(), [&](std::size_t i) {
     const TetRef leaf = leaves_.list()[i].tet;
@@ -326,7 +323,7 @@ std::optional<LabelledLattice> LabelLattice::Impl::refine(const FidelityGap& gap
   bool refined = false;
   for (;;) {
     if (!missed.empty()) {
-      const std::vector<TetRef> more = leaves_that_miss(missed);
+      const std::vector<TetRef> more = leaves_that_miss(missed, gap.missed_size_mm);
       marked.insert(marked.end(), more.begin(), more.end());
     }
     if (marked.empty()) break;

@@ -48,6 +48,7 @@ struct FidelityGap {
   std::vector<TissueId> wrong;         ///< by voxel: the tissue that its wrong label costs fidelity, 0 where right
   std::vector<std::uint64_t> to_mend;  ///< by tissue: how many of its wrong voxels have to become right
   std::vector<std::uint32_t> missed;   ///< voxels whose label the lattice itself is to have, offsets in the image
+  double missed_size_mm = 0;           ///< spacing that is fine enough for them
 };
 
 /// The lattice over one image, from its first refinement to the last. Every voxel centre of the image belongs to

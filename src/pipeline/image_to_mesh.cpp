@@ -173,6 +173,19 @@ void describe_shrinkage(const TissueMesh& mesh, const TissueImage& image, std::v
   }
 }
 
+// Fidelity that was asked for and is not there is said in one sentence, however many tissues lack it.
+void describe_shortfall(const std::vector<TissueOutcome>& tissues, std::vector<std::string>& warnings) {
+  const auto lacks = [](const TissueOutcome& t) { return t.tets > 0 ? t.fidelity - std::min(t.f1, t.f2) : 0.0; };
+  const auto count = std::ranges::count_if(tissues, [&](const TissueOutcome& t) { return lacks(t) > 0; });
+  if (count == 0) return;
+  const TissueOutcome& worst = *std::ranges::max_element(tissues, {}, lacks);
+  const auto two_digits = [](double f) { return std::to_string(f).substr(0, 4); };
+  warnings.push_back(std::to_string(count) + (count == 1 ? " tissue stays" : " tissues stay") +
+                     " below the fidelity asked for, furthest " + with_voxels(worst.label, worst.voxels) + " with " +
+                     two_digits(std::min(worst.f1, worst.f2)) + " of " + two_digits(worst.fidelity) +
+                     "; a smaller min_size or looser angle bounds may help");
+}
+
 }  // namespace
 
 Result image_to_mesh(const LabelImage& image, const Options& options, const Progress& progress) {
@@ -206,6 +219,8 @@ Result image_to_mesh(const LabelImage& image, const Options& options, const Prog
   result.tissues = describe_tissues(tissues, plan, deformed);
   describe_losses(result.tissues, result.warnings);
   describe_shrinkage(deformed.mesh, tissues, result.warnings);
+  if (lattice.fidelity_stage == FidelityStage::final && lattice.max_elements == 0)
+    describe_shortfall(result.tissues, result.warnings);
   result.mesh = finish(deformed.mesh, tissues, ToPhysical(image, options.frame));
   if (result.mesh.tets.empty()) throw MeshingFailed("no tissue could be represented; take a smaller bcc_size");
   watch.stage_done("finish");

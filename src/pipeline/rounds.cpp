@@ -29,6 +29,8 @@ constexpr int kMaxCorrections = 2;
 // not worth thinning out.
 constexpr double kFull = 0.95, kRoomy = 0.75, kFar = 1.3;
 constexpr int kMaxTries = 4;
+// Tissues lacking so many times what they lack in the mean are refined locally within a budget.
+constexpr double kWorst = 2;
 // Of the tetrahedra of a lattice about this share is left when the mesh is finished.
 constexpr double kShareLeft = 0.6;
 // Surfaces of tissues of more than kLarge voxels have to lie near their boundary, too: at F = 0.95, the voxels that may
@@ -39,6 +41,8 @@ constexpr double kLayer = 0.08;
 // so many rounds.
 constexpr double kMissed = 0.03;
 constexpr int kMaxMissedRounds = 2;
+// Spacing, in mean voxel spacings, that is fine enough for them; within a budget a coarser one has to do.
+constexpr double kFineEnough = 1.5, kFineEnoughWithin = 2.5;
 // Of the progress.
 constexpr double kLatticeShare = 0.2;
 
@@ -97,7 +101,19 @@ class Rounds {
   Reached approach(TissueMesh& mesh) const;
   bool misses_much(const FarVoxels& far) const;
   DeformedMesh finish(TissueMesh mesh, std::size_t target) const;
+  // So many tetrahedra, and the best mesh that has no more.
+  struct Budget {
+    std::size_t most = 0;
+    double share_left = kShareLeft;
+    std::optional<DeformedMesh> best;
+    double filled_by(const TissueMesh& mesh) const {
+      return share_left * static_cast<double>(tissue_tets(mesh)) / static_cast<double>(most);
+    }
+  };
+  std::optional<TissueMesh> refine_worst(Reached& reached);
+  void finish_within(Budget& budget, const TissueMesh& mesh) const;
   bool is_stalled(const Reached& reached);
+  void ask_for_missed(FidelityGap& gap, Reached& reached, double voxels) const;
   std::optional<LabelledLattice> refine(Reached& reached, bool for_fidelity);
   bool must_retry(const DeformedMesh& finished);
 
@@ -199,6 +215,12 @@ bool Rounds::is_stalled(const Reached& reached) {
   return stalled;
 }
 
+void Rounds::ask_for_missed(FidelityGap& gap, Reached& reached, double voxels) const {
+  const Vec3 s = image_.spacing_mm;
+  gap.missed = std::move(reached.far.voxels);
+  gap.missed_size_mm = voxels * (s.x + s.y + s.z) / 3;
+}
+
 std::optional<LabelledLattice> Rounds::refine(Reached& reached, bool for_fidelity) {
   if (!may_refine()) return std::nullopt;
   const bool missing = missed_rounds_ < kMaxMissedRounds && misses_much(reached.far);
@@ -207,7 +229,7 @@ std::optional<LabelledLattice> Rounds::refine(Reached& reached, bool for_fidelit
   FidelityGap gap = find_gap(reached.mesh, image_, for_fidelity ? aim_ : std::vector<double>(aim_.size(), 0));
   if (missing) {
     ++missed_rounds_;
-    gap.missed = std::move(reached.far.voxels);
+    ask_for_missed(gap, reached, kFineEnough);
   }
   ++round_;
   std::optional<LabelledLattice> finer = builder_->refine(gap, part(0, 0));
@@ -254,42 +276,67 @@ DeformedMesh Rounds::run() {
   }
 }
 
-// All spacings become larger or smaller until the finished mesh nearly fills the budget. One of a little more is
-// thinned out to it; of those inside it the most faithful one is the result.
-DeformedMesh Rounds::run_within(std::size_t max_elements) {
-  const auto budget = static_cast<double>(max_elements);
-  sizes_.fit_budget(kFull * budget);
-  double share_left = kShareLeft, least = kUnknown;
-  std::optional<DeformedMesh> best;
-  const auto keep = [&](DeformedMesh mesh) {
-    if (tissue_tets(mesh.mesh) > max_elements) return;
-    if (!best || mean_reached(mesh.final.tissues) > mean_reached(best->final.tissues)) best = std::move(mesh);
+// What helps most where the spacings come from a budget: to have what the mesh misses, and its worst tissues. Nothing
+// where there is nothing of that kind.
+std::optional<TissueMesh> Rounds::refine_worst(Reached& reached) {
+  const double least = 1 - kWorst * (1 - mean_reached(reached.mesh.tissues));
+  std::vector<double> asked(wanted_.size());
+  for (std::size_t t = 1; t < asked.size(); ++t) asked[t] = std::min(least, wanted_[t]);
+  const bool missing = misses_much(reached.far);
+  if (!may_refine() || !(missing || lacking(reached.mesh.tissues, asked) > 0)) return std::nullopt;
+  FidelityGap gap = find_gap(reached.mesh, image_, asked);
+  if (missing) ask_for_missed(gap, reached, kFineEnoughWithin);
+  std::optional<LabelledLattice> finer = builder_->refine(gap, part(0, 0));
+  stage_done_("lattice");
+  if (!finer) return std::nullopt;
+  reached = approach(finer->mesh);
+  return std::move(finer->mesh);
+}
+
+// Finishes a mesh, and where it has more tetrahedra than it may have once more, thinned out.
+void Rounds::finish_within(Budget& budget, const TissueMesh& mesh) const {
+  const auto keep = [&](DeformedMesh finished) {
+    if (tissue_tets(finished.mesh) > budget.most) return;
+    if (!budget.best || mean_reached(finished.final.tissues) > mean_reached(budget.best->final.tissues))
+      budget.best = std::move(finished);
   };
-  for (int n = 0; n < kMaxTries; ++n, ++round_) {
+  DeformedMesh finished = finish(mesh, 0);
+  budget.share_left = static_cast<double>(tissue_tets(finished.mesh)) / static_cast<double>(tissue_tets(mesh));
+  keep(std::move(finished));
+  // The last flips may add a few.
+  if (budget.filled_by(mesh) > 1) keep(finish(mesh, budget.most - budget.most / 100));
+}
+
+// All spacings become larger or smaller until the finished mesh nearly fills the budget. The most faithful one of those
+// inside it is the result.
+DeformedMesh Rounds::run_within(std::size_t max_elements) {
+  Budget budget;
+  budget.most = max_elements;
+  sizes_.fit_budget(kFull * static_cast<double>(max_elements));
+  double least = kUnknown;
+  for (bool is_last = false; !is_last; ++round_) {
     build();
     TissueMesh mesh = std::move(lattice_.mesh);
-    const Reached reached = approach(mesh);
-    const auto tets = static_cast<double>(tissue_tets(mesh));
-    const bool wants_more = lacking(reached.mesh.tissues, wanted_) > 0;
-    double filled = share_left * tets / budget;
-    sizes_.scale(std::sqrt(filled / kFull));
-    const bool is_last = n + 1 == kMaxTries || sizes_.choose() == choice_;
-    if (is_last || (filled < kFar && !(filled < kRoomy && wants_more))) {
-      sizes_.scale(std::sqrt(kFull / filled));
-      DeformedMesh finished = finish(mesh, 0);
-      const auto left = static_cast<double>(tissue_tets(finished.mesh));
-      share_left = left / tets;
-      filled = left / budget;
-      keep(std::move(finished));
-      // The last flips may add a few.
-      if (filled > 1 && filled < kFar) keep(finish(std::move(mesh), max_elements - max_elements / 100));
-      if (best && (is_last || !(filled < kRoomy && wants_more))) break;
-      sizes_.scale(std::sqrt(filled / kFull));
+    Reached reached = approach(mesh);
+    std::optional<TissueMesh> finer;
+    if (budget.filled_by(mesh) < kFar) finer = refine_worst(reached);
+    double filled = budget.filled_by(finer ? *finer : mesh);
+    const auto suits = [&] {
+      return filled < kFar && !(filled < kRoomy && lacking(reached.mesh.tissues, wanted_) > 0);
+    };
+    SurfaceSizes next = sizes_;
+    next.scale(std::sqrt(filled / kFull));
+    is_last = round_ + 1 == kMaxTries || next.choose() == choice_;
+    if (is_last || suits()) {
+      const TissueMesh& best = finer && filled < kFar ? *finer : mesh;
+      finish_within(budget, best);
+      filled = budget.filled_by(best);
+      is_last = is_last || (budget.best && suits());
     }
-    least = std::min(least, filled * budget);
-    if (is_last) break;
+    sizes_.scale(std::sqrt(filled / kFull));
+    least = std::min(least, filled * static_cast<double>(max_elements));
   }
-  if (best) return std::move(*best);
+  if (budget.best) return std::move(*budget.best);
   throw MeshingFailed("max_elements is " + std::to_string(max_elements) + ", but this image takes about " +
                       std::to_string(static_cast<std::size_t>(least)) + " tetrahedra at least with this bcc_size");
 }

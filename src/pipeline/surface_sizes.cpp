@@ -69,6 +69,14 @@ void SurfaceSizes::fit_budget(double tets) {
     squares += area_mm2_[t] / (fair[t] * fair[t]);
     twice += area_mm2_[t];
   }
+  // A lattice has them in halvings only, and changes of spacing cost tetrahedra and smoothness: what is less than a
+  // halving from the others becomes one with them.
+  const double usual = std::sqrt(twice / squares);
+  squares = 0;
+  for (std::size_t t = 1; t < fair.size(); ++t) {
+    fair[t] = usual * std::exp2(-std::max(0.0, std::floor(std::log2(usual / fair[t]))));
+    squares += area_mm2_[t] / (fair[t] * fair[t]);
+  }
   squares *= 0.5 * (1 + area_mm2_[0] / twice);  // an interface between two tissues counted for both
   const double factor = std::sqrt(kTetsPerSquare * squares / tets);
   for (std::size_t t = 1; t < fair.size(); ++t) size_mm_[t] = std::max(size_mm_[t], factor * fair[t]);

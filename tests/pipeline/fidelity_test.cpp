@@ -97,6 +97,23 @@ TEST(MaxElements, AreNeverExceededAndMoreAreNoWorse) {
   }
 }
 
+TEST(FinalFidelity, WhatFallsShortIsSaid) {
+  const LabelImage image = testing::nested_spheres();
+  for (const double min_size_mm : {1.0, 8.0}) {
+    Options options;
+    options.lattice.bcc_size_mm = 8;
+    options.lattice.min_size_mm = min_size_mm;
+    const Result result = image_to_mesh(image, options);
+    const bool lacks =
+        std::ranges::any_of(result.tissues, [](const TissueOutcome& t) { return std::min(t.f1, t.f2) < t.fidelity; });
+    const bool said = std::ranges::any_of(result.warnings, [](const std::string& warning) {
+      return warning.find("below the fidelity asked for") != std::string::npos;
+    });
+    EXPECT_EQ(lacks, min_size_mm == 8);
+    EXPECT_EQ(said, lacks);
+  }
+}
+
 TEST(DropIslands, RemovesAndNamesThem) {
   LabelImage image = testing::sphere();
   for (const std::size_t x : {1u, 2u}) image.voxels[x + image.size[0] * (1 + image.size[1])] = 1;
