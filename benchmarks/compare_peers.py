@@ -34,11 +34,11 @@ MRICRON = pathlib.Path("/usr/share/mricron/templates")
 # image: spacing of our coarsest lattice in mean voxel spacings, where it is not the default (as in
 # tests/pipeline/real_images_test.cpp)
 IMAGES = {"crtc_i2m_ventricles.nii.gz": None, "crtc_i2m_nidus.nii.gz": None, "crtc_i2m_brain.nii.gz": None,
-          "medmpd_p3_brain_ventricles_1mm_LIA.nii.gz": None, "medmpd_p2_intracranial_ventricles_vessels.nii.gz": 16,
+          "medmpd_p3_brain_ventricles_1mm_LIA.nii.gz": None, "medmpd_p2_intracranial_ventricles_vessels.nii.gz": None,
           "totalseg_example_seg.nii.gz": None, "aal.nii.gz": None, "brats2013_p1_brain_tumor.nii.gz": None,
           "cleaver_mickey.nrrd": None, "niivue_torsoLabel.nii.gz": None, "seg3d_brain_skull.nii.gz": None,
-          "spl_brain_hncma_atlas.nrrd": 16, "spl_knee_seg.nrrd": 16, "fvb_mouse_exvivo_oblique.nii.gz": 16,
-          "allen_human_2020.nii.gz": 24, "gubra_mouse_brain_large_uint32.nii.gz": 32}
+          "spl_brain_hncma_atlas.nrrd": None, "spl_knee_seg.nrrd": None, "fvb_mouse_exvivo_oblique.nii.gz": None,
+          "allen_human_2020.nii.gz": None, "gubra_mouse_brain_large_uint32.nii.gz": 32}
 
 PEERS = {"cgal": [], "cgal_weights": ["--weights"]}
 TITLES = {"ours": "**Anatomesh**", "cgal": "CGAL", "cgal_weights": "CGAL, weights"}

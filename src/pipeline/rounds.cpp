@@ -39,7 +39,7 @@ constexpr std::uint64_t kLarge = 5000;
 constexpr double kLayer = 0.08;
 // Voxels far from the mesh's surfaces are cared for where there is one of them to so many on the tissue's boundary, in
 // so many rounds.
-constexpr double kMissed = 0.03;
+constexpr double kMissed = 0.015;
 constexpr int kMaxMissedRounds = 2;
 // Spacing, in mean voxel spacings, that is fine enough for them; within a budget a coarser one has to do.
 constexpr double kFineEnough = 1.5, kFineEnoughWithin = 2.5;
@@ -115,7 +115,7 @@ class Rounds {
   bool is_stalled(const Reached& reached);
   void ask_for_missed(FidelityGap& gap, Reached& reached, double voxels) const;
   std::optional<LabelledLattice> refine(Reached& reached, bool for_fidelity);
-  bool must_retry(const DeformedMesh& finished);
+  bool must_retry(const std::vector<Fidelity>& approached, const std::vector<Fidelity>& finished);
 
   const TissueImage& image_;
   const LatticeOptions& options_;
@@ -237,14 +237,18 @@ std::optional<LabelledLattice> Rounds::refine(Reached& reached, bool for_fidelit
   return finer;
 }
 
-// What the last steps took from a tissue is asked for on top.
-bool Rounds::must_retry(const DeformedMesh& finished) {
-  if (!may_refine() || retries_ == kMaxRetries || lacking(finished.final.tissues, wanted_) == 0) return false;
-  ++retries_;
+// What the last steps took from a tissue is asked for on top; what it lacked before cannot be had by that.
+bool Rounds::must_retry(const std::vector<Fidelity>& approached, const std::vector<Fidelity>& finished) {
+  if (!may_refine() || retries_ == kMaxRetries) return false;
+  bool any = false;
   for (std::size_t t = 1; t < aim_.size(); ++t) {
-    const double lacks = wanted_[t] - reached_of(finished.final.tissues[t]);
-    if (lacks > 0) aim_[t] = std::min(1.0, aim_[t] + lacks + kReserve * (1 - wanted_[t]));
+    const double lacks = wanted_[t] - reached_of(finished[t]);
+    if (lacks <= 0 || reached_of(approached[t]) < wanted_[t]) continue;
+    aim_[t] = std::min(1.0, aim_[t] + lacks + kReserve * (1 - wanted_[t]));
+    any = true;
   }
+  if (!any) return false;
+  ++retries_;
   lacked_ = kUnknown;
   return true;
 }
@@ -264,7 +268,7 @@ DeformedMesh Rounds::run() {
     std::optional<LabelledLattice> finer = refine(reached, !stalled);
     if (!finer) {
       DeformedMesh finished = finish(std::move(mesh), 0);
-      if (stalled || !must_retry(finished)) return finished;
+      if (stalled || !must_retry(reached.mesh.tissues, finished.final.tissues)) return finished;
       reached.mesh = std::move(finished.final);
       finer = refine(reached, true);
       if (!finer) {
