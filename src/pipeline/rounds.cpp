@@ -18,6 +18,7 @@ constexpr double kFirstShare = 0.75;
 // A round that leaves more than this share of what was lacking is the last: what is left is not to be had.
 constexpr double kWorthwhile = 0.9;
 constexpr int kMaxRounds = 12;
+constexpr int kMaxDoublings = 4;
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
 // The last steps of the deformation may take a little fidelity, so a little more is asked for before; where it was not
 // enough, more, so many times.
@@ -113,6 +114,7 @@ class Rounds {
   std::optional<TissueMesh> refine_worst(Reached& reached);
   void finish_within(Budget& budget, const TissueMesh& mesh) const;
   bool is_stalled(const Reached& reached);
+  bool lacks_much(const std::vector<Fidelity>& reached) const;
   void ask_for_missed(FidelityGap& gap, Reached& reached, double voxels) const;
   std::optional<LabelledLattice> refine(Reached& reached, bool for_fidelity);
   bool must_retry(const std::vector<Fidelity>& approached, const std::vector<Fidelity>& finished);
@@ -134,7 +136,7 @@ class Rounds {
   std::vector<double> area_mm2_;  // by tissue
   std::vector<char> is_large_;    // by tissue
   double lacked_ = kUnknown;      // by all tissues in the last round
-  int round_ = 0, retries_ = 0, corrections_ = 0, missed_rounds_ = 0;
+  int round_ = 0, local_rounds_ = 0, retries_ = 0, corrections_ = 0, missed_rounds_ = 0;
 };
 
 std::vector<double> Rounds::aims(const TissueImage& image, const std::vector<double>& wanted) {
@@ -221,16 +223,27 @@ void Rounds::ask_for_missed(FidelityGap& gap, Reached& reached, double voxels) c
   gap.missed_size_mm = voxels * (s.x + s.y + s.z) / 3;
 }
 
+// Whether a tissue has not even half of the reserve.
+bool Rounds::lacks_much(const std::vector<Fidelity>& reached) const {
+  for (std::size_t t = 1; t < aim_.size(); ++t) {
+    if (reached_of(reached[t]) < aim_[t] - 0.5 * kReserve * (1 - aim_[t])) return true;
+  }
+  return false;
+}
+
 std::optional<LabelledLattice> Rounds::refine(Reached& reached, bool for_fidelity) {
   if (!may_refine()) return std::nullopt;
   const bool missing = missed_rounds_ < kMaxMissedRounds && misses_much(reached.far);
-  for_fidelity = for_fidelity && lacking(reached.mesh.tissues, aim_) > 0;
+  for_fidelity = for_fidelity && lacks_much(reached.mesh.tissues);
   if (!missing && !for_fidelity) return std::nullopt;
   FidelityGap gap = find_gap(reached.mesh, image_, for_fidelity ? aim_ : std::vector<double>(aim_.size(), 0));
   if (missing) {
     ++missed_rounds_;
     ask_for_missed(gap, reached, kFineEnough);
   }
+  // Not all that is refined becomes right: twice as much is asked for, then four times what is left ...
+  local_rounds_ = std::min(local_rounds_ + 1, kMaxDoublings);
+  for (std::uint64_t& voxels : gap.to_mend) voxels <<= local_rounds_;
   ++round_;
   std::optional<LabelledLattice> finer = builder_->refine(gap, part(0, 0));
   stage_done_("lattice");
