@@ -70,11 +70,11 @@ void SurfaceSizes::fit_budget(double tets) {
     twice += area_mm2_[t];
   }
   // A lattice has them in halvings only, and changes of spacing cost tetrahedra and smoothness: what is less than a
-  // halving from the others becomes one with them.
+  // halving from the usual one becomes the usual one.
   const double usual = std::sqrt(twice / squares);
   squares = 0;
   for (std::size_t t = 1; t < fair.size(); ++t) {
-    fair[t] = usual * std::exp2(-std::max(0.0, std::floor(std::log2(usual / fair[t]))));
+    fair[t] = usual * std::exp2(-std::trunc(std::log2(usual / fair[t])));
     squares += area_mm2_[t] / (fair[t] * fair[t]);
   }
   squares *= 0.5 * (1 + area_mm2_[0] / twice);  // an interface between two tissues counted for both
