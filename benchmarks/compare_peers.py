@@ -31,8 +31,7 @@ from pages import replace_between  # noqa: E402
 
 MRICRON = pathlib.Path("/usr/share/mricron/templates")
 
-# image: spacing of our coarsest lattice in mean voxel spacings, where it is not the default (as in
-# tests/pipeline/real_images_test.cpp)
+# image: spacing of our coarsest lattice in mean voxel spacings, where it is not the default
 IMAGES = {"crtc_i2m_ventricles.nii.gz": None, "crtc_i2m_nidus.nii.gz": None, "crtc_i2m_brain.nii.gz": None,
           "medmpd_p3_brain_ventricles_1mm_LIA.nii.gz": None, "medmpd_p2_intracranial_ventricles_vessels.nii.gz": None,
           "totalseg_example_seg.nii.gz": None, "aal.nii.gz": None, "brats2013_p1_brain_tumor.nii.gz": None,

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <map>
+#include <sstream>
 #include <string>
 #include <utility>
 
@@ -179,11 +180,12 @@ void describe_shortfall(const std::vector<TissueOutcome>& tissues, std::vector<s
   const auto count = std::ranges::count_if(tissues, [&](const TissueOutcome& t) { return lacks(t) > 0; });
   if (count == 0) return;
   const TissueOutcome& worst = *std::ranges::max_element(tissues, {}, lacks);
-  const auto two_digits = [](double f) { return std::to_string(f).substr(0, 4); };
+  // Rounded down: what falls short must not look as if it did not.
+  std::ostringstream shares;
+  shares << std::floor(1000 * std::min(worst.f1, worst.f2)) / 1000 << " of " << worst.fidelity;
   warnings.push_back(std::to_string(count) + (count == 1 ? " tissue stays" : " tissues stay") +
                      " below the fidelity asked for, furthest " + with_voxels(worst.label, worst.voxels) + " with " +
-                     two_digits(std::min(worst.f1, worst.f2)) + " of " + two_digits(worst.fidelity) +
-                     "; a smaller min_size or looser angle bounds may help");
+                     shares.str() + "; a smaller min_size or looser angle bounds may help");
 }
 
 }  // namespace

@@ -18,6 +18,7 @@ constexpr double kFirstShare = 0.75;
 // A round that leaves more than this share of what was lacking is the last: what is left is not to be had.
 constexpr double kWorthwhile = 0.9;
 constexpr int kMaxRounds = 12;
+// From round to round twice as many of the wrong voxels that are left are asked for, so many times.
 constexpr int kMaxDoublings = 4;
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
 // The last steps of the deformation may take a little fidelity, so a little more is asked for before; where it was not
@@ -27,7 +28,7 @@ constexpr double kReserve = 0.08;  // of what may be wrong
 // Lattices that are built anew, for better spacings of the surfaces.
 constexpr int kMaxCorrections = 2;
 // Of a budget: a lattice is meant to fill so much of it, one of less leaves room for a finer one, and one of more is
-// not worth thinning out.
+// not worth thinning out as long as there is another try.
 constexpr double kFull = 0.95, kRoomy = 0.75, kFar = 1.3;
 constexpr int kMaxTries = 4;
 // Tissues lacking so many times what they lack in the mean are refined locally within a budget.

@@ -35,7 +35,7 @@ class SurfaceSizes {
   SurfaceSizes(const TissueImage& image, const Range& range, std::span<const double> wanted);
 
   /// Enlarges the spacings to those of a mesh of about so many tetrahedra, shared out among the tissues so that the
-  /// mean of what they lack is least; those that are larger stay.
+  /// mean of what they lack is least, but in halvings of one of them; those that are larger stay.
   void fit_budget(double tets);
 
   /// Makes all spacings larger or smaller.
