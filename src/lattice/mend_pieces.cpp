@@ -348,7 +348,8 @@ void PieceMender::cut_face(TetId a, TetId b) {
   if (!contents_.fixed[t]) relabel(t, other_tissue(t), kNone);
 }
 
-// What a tetrahedron holds most of besides its own tissue; else what its centre lies in, or what lies behind it.
+// What a tetrahedron holds most of besides its own tissue; else what lies behind it: a piece of its own without a voxel
+// would be dissolved again. Else what its centre lies in.
 TissueId PieceMender::other_tissue(TetId t) const {
   const TissueId own = complex_.tissue(t);
   std::map<TissueId, std::uint32_t> votes;
@@ -357,10 +358,10 @@ TissueId PieceMender::other_tissue(TetId t) const {
   };
   for (const std::uint32_t v : contents_.voxels(t)) vote(image_.voxels[v]);
   if (votes.empty()) {
-    if (const auto voxel = voxel_at(image_, centroid(complex_.mesh, t))) vote(image_.voxels[*voxel]);
+    for (const TetId other : complex_.behind[t]) vote(complex_.tissue(other));
   }
   if (votes.empty()) {
-    for (const TetId other : complex_.behind[t]) vote(complex_.tissue(other));
+    if (const auto voxel = voxel_at(image_, centroid(complex_.mesh, t))) vote(image_.voxels[*voxel]);
   }
   if (votes.empty()) return 0;
   return std::max_element(votes.begin(), votes.end(), [](auto& a, auto& b) { return a.second < b.second; })->first;
