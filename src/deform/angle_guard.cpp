@@ -10,12 +10,6 @@ namespace {
 // A move shorter than this share of an edge is not worth its tests.
 constexpr double kStill = 0.01;
 
-// A vertex inside whose worst tetrahedron is nearer to its bounds than this looks for a better place around it. The
-// worst is told by the differences of cosines and mean ratio from their bounds.
-constexpr double kRoom = 0.15;
-constexpr double kRoomReach = 0.15;  // of an edge
-constexpr int kRoomRounds = 6;
-
 // An interface vertex looks for the place around it where it is nearest to its goal, with some slack to spare, so that
 // its neighbours find theirs.
 constexpr double kSpare = 0.05;
@@ -23,17 +17,20 @@ constexpr double kReachOfEdge = 5;  // an edge is this many first steps long
 constexpr int kSearchRounds = 4;
 
 constexpr double kDiagonal = 0.6;
-constexpr std::array<Vec3, 8> kCubeDirections = {
-    Vec3{kDiagonal, kDiagonal, kDiagonal},    Vec3{-kDiagonal, -kDiagonal, kDiagonal},
-    Vec3{-kDiagonal, kDiagonal, -kDiagonal},  Vec3{kDiagonal, -kDiagonal, -kDiagonal},
-    Vec3{-kDiagonal, -kDiagonal, -kDiagonal}, Vec3{kDiagonal, kDiagonal, -kDiagonal},
-    Vec3{kDiagonal, -kDiagonal, kDiagonal},   Vec3{-kDiagonal, kDiagonal, kDiagonal}};
-constexpr std::array<Vec3, 14> kAllDirections = [] {
-  std::array<Vec3, 14> all = {Vec3{1, 0, 0},  Vec3{-1, 0, 0}, Vec3{0, 1, 0},
-                              Vec3{0, -1, 0}, Vec3{0, 0, 1},  Vec3{0, 0, -1}};
-  std::ranges::copy(kCubeDirections, all.begin() + 6);
-  return all;
-}();
+constexpr std::array<Vec3, 14> kSearchDirections = {Vec3{1, 0, 0},
+                                                    Vec3{-1, 0, 0},
+                                                    Vec3{0, 1, 0},
+                                                    Vec3{0, -1, 0},
+                                                    Vec3{0, 0, 1},
+                                                    Vec3{0, 0, -1},
+                                                    Vec3{kDiagonal, kDiagonal, kDiagonal},
+                                                    Vec3{-kDiagonal, -kDiagonal, kDiagonal},
+                                                    Vec3{-kDiagonal, kDiagonal, -kDiagonal},
+                                                    Vec3{kDiagonal, -kDiagonal, -kDiagonal},
+                                                    Vec3{-kDiagonal, -kDiagonal, -kDiagonal},
+                                                    Vec3{kDiagonal, kDiagonal, -kDiagonal},
+                                                    Vec3{kDiagonal, -kDiagonal, kDiagonal},
+                                                    Vec3{-kDiagonal, kDiagonal, kDiagonal}};
 
 std::array<Vec3, 4> corners_with(const TissueMesh& mesh, TetId t, VertexId moved, Vec3 p) {
   std::array<Vec3, 4> corners;
@@ -80,7 +77,7 @@ double AngleGuard::advance_best(VertexId v, Vec3 goal, const Mat3& metric, doubl
   for (int round = 0; round < kSearchRounds; ++round) {
     const Vec3 centre = best;
     bool moved = false;
-    for (const Vec3 direction : kAllDirections) {
+    for (const Vec3 direction : kSearchDirections) {
       const Vec3 at = centre + radius * direction;
       const double way = of_way(at);
       if (way >= least) continue;
@@ -97,18 +94,10 @@ double AngleGuard::advance_best(VertexId v, Vec3 goal, const Mat3& metric, doubl
 }
 
 double AngleGuard::slack(VertexId v, Vec3 p, double enough) const {
-  TetId worst = 0;
-  return slack(v, p, enough, worst);
-}
-
-double AngleGuard::slack(VertexId v, Vec3 p, double enough, TetId& worst) const {
   double least = 1;
   for (const TetId t : topology_.tets_of_vertex[v]) {
-    const double s = slack_of(t, v, p);
-    if (s >= least) continue;
-    least = s;
-    worst = t;
-    if (least < enough) return least;
+    least = std::min(least, slack_of(t, v, p));
+    if (least < enough) break;
   }
   return least;
 }
@@ -124,30 +113,6 @@ double AngleGuard::slack_of(TetId t, VertexId v, Vec3 p) const {
   const double cube = 432 * g.volume6 * g.volume6 / (g.edges * g.edges * g.edges);
   const double of_ratio = (cube - bound * bound * bound) / (3 * bound * bound);
   return std::min({bounds_.largest_cos - largest, smallest - bounds_.smallest_cos, of_ratio});
-}
-
-void AngleGuard::make_room(VertexId v, double enough, double reach) const {
-  Vec3& best = mesh_.points_mm[v];
-  TetId worst = 0;
-  double least = slack(v, best, -1, worst);
-  if (least < 0) return;
-  double radius = reach;
-  for (int round = 0; round < kRoomRounds && least < enough; ++round) {
-    const Vec3 centre = best;
-    bool moved = false;
-    for (const Vec3 direction : kCubeDirections) {
-      const Vec3 at = centre + radius * direction;
-      if (slack_of(worst, v, at) <= least) continue;
-      TetId next = worst;
-      const double s = slack(v, at, least, next);
-      if (s <= least) continue;
-      least = s;
-      worst = next;
-      best = at;
-      moved = true;
-    }
-    if (!moved) radius *= 0.5;
-  }
 }
 
 void for_each_vertex_by_colour(const MeshTopology& topology, const Stage& stage,
@@ -190,7 +155,6 @@ void relax_interior(TissueMesh& mesh, const MeshTopology& topology, const AngleG
         break;
       }
     }
-    guard.make_room(v, kRoom, kRoomReach * edge);
   });
 }
 

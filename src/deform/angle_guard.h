@@ -33,16 +33,11 @@ class AngleGuard {
   /// Returns what advance() does. Neighbours of v must not move at the same time.
   double advance_best(VertexId v, Vec3 goal, const Mat3& metric, double reach) const;
 
-  /// Moves v to a place around it where the worst of its tetrahedra is farther from the bounds (see slack()), in steps
-  /// of `reach` (mm) and fractions of it, until it is `enough`.
-  void make_room(VertexId v, double enough, double reach) const;
-
   /// How far the worst tetrahedron at v is from its bounds when v is at p; negative outside of them, 1 at
   /// the most. Cushion tetrahedra count only when they turn over. Stops at the first that is below `enough`.
   double slack(VertexId v, Vec3 p, double enough) const;
 
  private:
-  double slack(VertexId v, Vec3 p, double enough, TetId& worst) const;
   double slack_of(TetId t, VertexId v, Vec3 p) const;
 
   TissueMesh& mesh_;

@@ -12,8 +12,7 @@
 namespace anatomesh {
 namespace {
 
-constexpr int kFirstIterations = 2;
-constexpr int kFirstSettleSweeps = 4, kSettleSweeps = 2;
+constexpr int kSettleSweeps = 4;
 
 std::vector<Material> materials_of(const TissueImage& image, const DeformOptions& options) {
   std::vector<Material> materials(image.labels.size(), options.default_material);
@@ -45,22 +44,16 @@ void Deformer::approach(TissueMesh& mesh, const Stage& stage) const {
   split_bridges(mesh, bounds_, stage);
   const MeshTopology topology = make_topology(mesh);
   const AngleGuard guard(mesh, topology, bounds_);
-  register_mesh(mesh, topology, guard, field_, targets_, materials_, std::min(options_.iterations, kFirstIterations),
+  register_mesh(mesh, topology, guard, field_, targets_, materials_, options_.iterations,
                 stage.part("register", 0.1, 0.7));
-  std::vector<double> outward_mm(image_.labels.size(), 0);
-  settle(mesh, topology, guard, field_, kFirstSettleSweeps, outward_mm, stage.part("settle", 0.7, 1.0));
+  VolumeShifts shifts(image_);
+  settle(mesh, topology, guard, field_, kSettleSweeps, shifts, stage.part("settle", 0.7, 1.0));
 }
 
 void Deformer::finish(TissueMesh& mesh, const ImproveOptions& improvement, const Stage& stage) const {
   if (options_.iterations == 0) return;
-  const MeshTopology topology = make_topology(mesh);
-  const AngleGuard guard(mesh, topology, bounds_);
-  if (options_.iterations > kFirstIterations)
-    register_mesh(mesh, topology, guard, field_, targets_, materials_, options_.iterations - kFirstIterations,
-                  stage.part("register", 0.1, 0.7));
-  std::vector<double> outward_mm(image_.labels.size(), 0);
-  settle(mesh, topology, guard, field_, kSettleSweeps, outward_mm, stage.part("settle", 0.7, 0.8));
-  improve(mesh, field_, bounds_, improvement, outward_mm, stage.part("improve", 0.8, 1.0));
+  VolumeShifts shifts(image_);
+  improve(mesh, field_, bounds_, improvement, shifts, stage);
 }
 
 }  // namespace anatomesh

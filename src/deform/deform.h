@@ -23,11 +23,11 @@ class Deformer {
   Deformer(const TissueImage& image, const DeformOptions& options, const Stage& stage);
 
   /// Takes a lattice to the boundaries, near enough to judge its fidelity: edges that would hold the surface back are
-  /// split, the mesh is registered onto the image's edge points (in the first two of options.iterations) and settled.
+  /// split, the mesh is registered onto the image's edge points (in options.iterations at most) and settled.
   /// The tissues' volumes and surfaces on the lattice stay as they are. Nothing for no iterations. Throws Cancelled.
   void approach(TissueMesh& mesh, const Stage& stage) const;
 
-  /// The other iterations and settling in full, then fewer and better tetrahedra. Throws Cancelled.
+  /// Smooth and settled surfaces with fewer and better tetrahedra. Throws Cancelled.
   void finish(TissueMesh& mesh, const ImproveOptions& improvement, const Stage& stage) const;
 
  private:

@@ -16,12 +16,12 @@
 namespace anatomesh {
 namespace {
 
-constexpr int kSmoothings = 3;       // before interface vertices are collapsed
+constexpr int kSmoothings = 2;       // before interface vertices are collapsed
 constexpr int kLaterSmoothings = 2;  // after they were
 constexpr int kSettleSweeps = 4;
 constexpr int kRounds = 10;
 constexpr int kToleranceSteps = 3;
-constexpr double kEnoughSlack = 0.05;   // tetrahedra with less are worth improving: some 8 degrees above 20
+constexpr double kEnoughSlack = 0.03;   // tetrahedra with less are worth improving: some 5 degrees above 20
 constexpr double kSlidingSlack = 0.02;  // with less, worth moving an interface vertex: some 3 degrees
 constexpr double kEarlyMarginDeg = 8;   // collapses that must leave room for smoothing
 constexpr double kInterfaceMarginDeg = 2;
@@ -39,8 +39,8 @@ ShapeBounds tightened(const ShapeBounds& bounds, double margin_deg) {
 class Improver {
  public:
   Improver(TissueMesh& mesh, const SurfaceField& field, const ShapeBounds& bounds, const ImproveOptions& options,
-           std::vector<double>& outward_mm, const Stage& stage)
-      : mesh_(mesh), field_(field), bounds_(bounds), options_(options), outward_mm_(outward_mm), stage_(stage) {}
+           VolumeShifts& shifts, const Stage& stage)
+      : mesh_(mesh), field_(field), bounds_(bounds), options_(options), shifts_(shifts), stage_(stage) {}
 
   ImproveReport run();
 
@@ -56,7 +56,7 @@ class Improver {
   const SurfaceField& field_;
   const ShapeBounds& bounds_;
   const ImproveOptions& options_;
-  std::vector<double>& outward_mm_;
+  VolumeShifts& shifts_;
   const Stage& stage_;
   ImproveReport report_;
 };
@@ -74,7 +74,7 @@ void Improver::smooth(int times, double begin, double end) {
     improve_all(editor);
     mesh_ = editor.result();
     const MeshTopology topology = make_topology(mesh_);
-    settle(mesh_, topology, AngleGuard(mesh_, topology, bounds_), field_, kSettleSweeps, outward_mm_,
+    settle(mesh_, topology, AngleGuard(mesh_, topology, bounds_), field_, kSettleSweeps, shifts_,
            stage_.part("settle", begin + (end - begin) * n / times, begin + (end - begin) * (n + 1) / times));
   }
 }
@@ -155,8 +155,8 @@ ImproveReport Improver::run() {
 }  // namespace
 
 ImproveReport improve(TissueMesh& mesh, const SurfaceField& field, const ShapeBounds& bounds,
-                      const ImproveOptions& options, std::vector<double>& outward_mm, const Stage& stage) {
-  return Improver(mesh, field, bounds, options, outward_mm, stage).run();
+                      const ImproveOptions& options, VolumeShifts& shifts, const Stage& stage) {
+  return Improver(mesh, field, bounds, options, shifts, stage).run();
 }
 
 }  // namespace anatomesh

@@ -7,6 +7,7 @@
 
 #include "base/stage.h"
 #include "boundary/surface_field.h"
+#include "deform/volume_shifts.h"
 #include "image/size_field.h"
 #include "mesh/tet_shape.h"
 #include "mesh/tissue_mesh.h"
@@ -35,8 +36,8 @@ struct ImproveReport {
 /// and the interfaces, which they held back, settled again; then vertices are collapsed, on interfaces inside the
 /// tolerance, inside the tissues as far as the bounds and sizes allow. All tetrahedra of the tissues stay inside the
 /// bounds, and the tissues' topology stays as it is. Cushion last, as before. Does not depend on the number of threads.
-/// outward_mm: as for settle(). Throws Cancelled.
+/// shifts: as for settle(). Throws Cancelled.
 ImproveReport improve(TissueMesh& mesh, const SurfaceField& field, const ShapeBounds& bounds,
-                      const ImproveOptions& options, std::vector<double>& outward_mm, const Stage& stage);
+                      const ImproveOptions& options, VolumeShifts& shifts, const Stage& stage);
 
 }  // namespace anatomesh

@@ -1,6 +1,8 @@
 #include "deform/interface_faces.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <tuple>
 
 #include "base/parallel.h"
@@ -35,21 +37,59 @@ void append_sides(const TissueMesh& mesh, const MeshTopology& topology, VertexId
   }
 }
 
-// The border plane that the tetrahedron is farthest beyond.
-std::optional<BorderPlane> border_crossed(const TissueMesh& mesh, TetId t, const TissueImage& image) {
-  if (mesh.tissues[t] != 0) return {};
-  Vec3 centre;
-  for (const VertexId v : mesh.tets[t]) centre += 0.25 * mesh.points_mm[v];
+// The border plane that p is farthest beyond.
+std::optional<BorderPlane> border_crossed(const TissueImage& image, Vec3 p) {
   std::optional<BorderPlane> crossed;
   double farthest = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double low = image.low_border_mm(axis), high = image.high_border_mm(axis);
-    const double beyond = std::max(low - centre[axis], centre[axis] - high);
+    const double beyond = std::max(low - p[axis], p[axis] - high);
     if (beyond <= farthest) continue;
     farthest = beyond;
-    crossed = BorderPlane{axis, centre[axis] < low ? low : high};
+    crossed = BorderPlane{axis, p[axis] < low ? low : high};
   }
   return crossed;
+}
+
+double distance_from_border(const TissueImage& image, Vec3 p) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    least = std::min(
+        {least, std::abs(p[axis] - image.low_border_mm(axis)), std::abs(p[axis] - image.high_border_mm(axis))});
+  return least;
+}
+
+TissueId nearest_voxel(const TissueImage& image, Vec3 p) {
+  std::array<int, 3> index;
+  for (std::size_t a = 0; a < 3; ++a)
+    index[a] = static_cast<int>(std::lround(p[a] / image.spacing_mm[a] - static_cast<double>(image.first[a])));
+  return image.at_or_background(index[0], index[1], index[2]);
+}
+
+// The border plane where the tissue behind a face toward the background ends, seen along the face's normal: none where
+// it ends inside the image, nearer to the face.
+std::optional<BorderPlane> border_at(const TissueMesh& mesh, const TissueImage& image, const InterfaceFace& face) {
+  const Vec3 a = mesh.points_mm[face.vertices[0]], b = mesh.points_mm[face.vertices[1]],
+             c = mesh.points_mm[face.vertices[2]];
+  const Vec3 centre = (1.0 / 3) * (a + b + c), inward = cross(b - a, c - a);
+  const Vec3 voxel = image.spacing_mm;
+  const double longest = std::sqrt(std::max({norm_squared(b - a), norm_squared(c - b), norm_squared(a - c)}));
+  const double reach = std::max(longest, 2 * std::max({voxel.x, voxel.y, voxel.z}));
+  if (distance_from_border(image, centre) > reach) return {};
+  const double step = 0.5 * std::min({voxel.x, voxel.y, voxel.z});
+  const Vec3 along = (-step / norm(inward)) * inward;
+  const int steps = static_cast<int>(std::ceil(reach / step));
+  std::optional<BorderPlane> nearest;
+  int least = steps + 1;
+  for (int n = -steps; n < steps; ++n) {
+    const Vec3 p = centre + static_cast<double>(n) * along, q = p + along;
+    if (std::abs(n) >= least || border_crossed(image, p) || nearest_voxel(image, p) != face.high) continue;
+    const auto border = border_crossed(image, q);
+    if (!border && nearest_voxel(image, q) == face.high) continue;
+    least = std::abs(n);
+    nearest = border;
+  }
+  return nearest;
 }
 
 void append_faces(const TissueMesh& mesh, const TissueImage& image, std::vector<Side>& sides,
@@ -59,8 +99,10 @@ void append_faces(const TissueMesh& mesh, const TissueImage& image, std::vector<
     const Side &a = sides[n], &b = sides[n + 1];
     if (a.middle != b.middle || a.last != b.last) continue;
     const TissueId of_a = mesh.tissues[a.tet], of_b = mesh.tissues[b.tet];
-    if (of_a < of_b) faces.push_back({b.inward, of_a, of_b, border_crossed(mesh, a.tet, image)});
-    if (of_b < of_a) faces.push_back({a.inward, of_b, of_a, border_crossed(mesh, b.tet, image)});
+    if (of_a == of_b) continue;
+    InterfaceFace& face = faces.emplace_back(of_a < of_b ? InterfaceFace{b.inward, of_a, of_b, {}}
+                                                         : InterfaceFace{a.inward, of_b, of_a, {}});
+    if (face.low == 0) face.border = border_at(mesh, image, face);
   }
 }
 

@@ -29,7 +29,7 @@ struct InterfaceFaces {
   VertexLists<std::uint32_t> of_vertex;  ///< positions in `faces`, ascending
 };
 
-/// A face toward a background tetrahedron with its barycentre outside the original image lies on the image's border.
+/// A face toward the background lies on the image's border where its tissue goes on to that border around it.
 /// Cost: linear. The mesh's tetrahedra are positively oriented.
 InterfaceFaces find_interface_faces(const TissueMesh& mesh, const MeshTopology& topology, const TissueImage& image);
 

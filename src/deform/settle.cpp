@@ -26,10 +26,6 @@ constexpr double kOfBorder = 1e4;
 // Share of the way to the mean of the neighbours in a sweep.
 constexpr double kRelaxation = 0.5;
 
-// Volume is won back by shifting a tissue's boundary no farther than this share of a voxel, a part of it in each sweep.
-constexpr double kMostShift = 0.15;
-constexpr double kDamping = 0.5;
-
 // A sum of squared distances to planes, as a function of a displacement.
 struct Quadric {
   Mat3 matrix = {};
@@ -71,40 +67,19 @@ struct PairAtVertex {
 class Settling {
  public:
   Settling(TissueMesh& mesh, const MeshTopology& topology, const AngleGuard& guard, const SurfaceField& field,
-           std::vector<double>& outward_mm)
+           VolumeShifts& shifts)
       : mesh_(mesh),
         topology_(topology),
         guard_(guard),
         field_(field),
         interfaces_(find_interface_faces(mesh, topology, field.image())),
         planes_(interfaces_.faces.size()),
-        outward_mm_(outward_mm) {
+        shifts_(shifts) {
     const Vec3 s = field.image().spacing_mm;
     voxel_mm_ = std::max({s.x, s.y, s.z});
   }
 
-  // Shifts the boundary of each tissue by what brings the volume of its voxels: the volume that it lacks over its area.
-  // Chords of a coarse mesh and parts too thin for it lose some; a vertex that the guard stopped may lose or win some.
-  void keep_volumes() {
-    const TissueImage& image = field_.image();
-    const Vec3 s = image.spacing_mm;
-    std::vector<double> volume(image.labels.size()), area(image.labels.size());
-    for (const InterfaceFace& face : interfaces_.faces) {
-      const Vec3 out = area_vector(face);
-      const double part = dot(centroid(face), out) / 3;
-      volume[face.low] += part;
-      volume[face.high] -= part;
-      if (face.border) continue;
-      area[face.low] += norm(out);
-      area[face.high] += norm(out);
-    }
-    const double most = kMostShift * (s.x + s.y + s.z) / 3;
-    for (std::size_t t = 1; t < volume.size(); ++t) {
-      if (area[t] == 0) continue;
-      const double lacking = image.volume_mm3(t) - volume[t];
-      outward_mm_[t] = std::clamp(outward_mm_[t] + kDamping * lacking / area[t], -most, most);
-    }
-  }
+  void keep_volumes() { shifts_.update(mesh_, interfaces_); }
 
   // Finds the boundary near each face as it lies now.
   void find_planes() {
@@ -164,7 +139,7 @@ class Settling {
     const Vec3 centre = centroid(face);
     field_.evaluate(centre, pair, share, gradient);
     Plane plane = plane_at(centre, share[1] - share[0], gradient[1] - gradient[0], area).value_or(Plane{});
-    plane.level += outward_mm_[face.low] - outward_mm_[face.high];
+    plane.level += shifts_.between(face.low, face.high);
     return plane;
   }
 
@@ -261,15 +236,15 @@ class Settling {
   const SurfaceField& field_;
   InterfaceFaces interfaces_;
   std::vector<Plane> planes_;
-  std::vector<double>& outward_mm_;
+  VolumeShifts& shifts_;
   double voxel_mm_;
 };
 
 }  // namespace
 
 void settle(TissueMesh& mesh, const MeshTopology& topology, const AngleGuard& guard, const SurfaceField& field,
-            int sweeps, std::vector<double>& outward_mm, const Stage& stage) {
-  Settling settling(mesh, topology, guard, field, outward_mm);
+            int sweeps, VolumeShifts& shifts, const Stage& stage) {
+  Settling settling(mesh, topology, guard, field, shifts);
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     if (sweep > 0) settling.keep_volumes();
     settling.find_planes();

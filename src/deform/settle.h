@@ -2,20 +2,19 @@
 // tissues.
 #pragma once
 
-#include <vector>
-
 #include "base/stage.h"
 #include "boundary/surface_field.h"
 #include "deform/angle_guard.h"
+#include "deform/volume_shifts.h"
 
 namespace anatomesh {
 
 /// Moves interface vertices so that the faces around them straddle the boundary of their two tissues and lie along it,
-/// and evenly along their surface or junction line, under the guard; vertices inside make room. `sweeps` times; fewer
-/// do where the mesh lies near the boundary already. Faces at the border of the original image go onto that border.
-/// Vertices of tissues of fewer than eight voxels stay. outward_mm: by tissue, how far its boundary is shifted outward
-/// for the sake of its volume; zeros at first, carried from call to call.
+/// and evenly along their surface or junction line, under the guard; vertices inside make room. `sweeps`
+/// times; fewer do where the mesh lies near the boundary already. Faces at the border of the original image go onto
+/// that border. Vertices of tissues of fewer than eight voxels stay. shifts: of the boundaries, for the sake of the
+/// volumes; brought up to date, and carried from call to call.
 void settle(TissueMesh& mesh, const MeshTopology& topology, const AngleGuard& guard, const SurfaceField& field,
-            int sweeps, std::vector<double>& outward_mm, const Stage& stage);
+            int sweeps, VolumeShifts& shifts, const Stage& stage);
 
 }  // namespace anatomesh

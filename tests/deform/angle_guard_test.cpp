@@ -172,23 +172,6 @@ TEST(AngleGuard, AdvanceBestEndsNoFartherFromItsGoalAndKeepsTheBounds) {
   expect_bounds(g.mesh);
 }
 
-TEST(AngleGuard, MakeRoomIncreasesTheSlack) {
-  Guarded g(testing::four_label_point());
-  RandomMoves moves(g.mesh, 8);
-  int more = 0;
-  for (int n = 0; n < 2000; ++n) {
-    const VertexId v = moves.vertex();
-    g.guard.advance(v, moves.goal(v, 2), 3);
-    const double before = g.guard.slack(v, g.mesh.points_mm[v], -1);
-    g.guard.make_room(v, 0.2, 0.4);
-    const double after = g.guard.slack(v, g.mesh.points_mm[v], -1);
-    EXPECT_GE(after, before);
-    more += after > before;
-  }
-  EXPECT_GT(more, 200);
-  expect_bounds(g.mesh);
-}
-
 TEST(RelaxInterior, MovesInnerVerticesOnlyAndKeepsTheBounds) {
   Guarded g(testing::four_label_point());
   RandomMoves moves(g.mesh, 6);

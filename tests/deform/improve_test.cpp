@@ -53,11 +53,11 @@ struct Case {
       : image(make_tissue_image(labels)),
         field(image),
         mesh(testing::lattice_of(image)),
-        outward_mm(image.labels.size(), 0) {}
+        shifts(image) {}
   TissueImage image;
   SurfaceField field;
   TissueMesh mesh;
-  std::vector<double> outward_mm;
+  VolumeShifts shifts;
 
   std::size_t coarsen(double surface_tolerance_mm) {
     MeshEditor editor(mesh);
@@ -70,7 +70,7 @@ struct Case {
     return gone;
   }
   ImproveReport improve(const ImproveOptions& options = {}) {
-    return anatomesh::improve(mesh, field, kBounds, options, outward_mm, testing::quiet_stage());
+    return anatomesh::improve(mesh, field, kBounds, options, shifts, testing::quiet_stage());
   }
 };
 
@@ -330,7 +330,7 @@ TEST(Improve, StopsWhenAskedTo) {
                             if (fraction > 0.3) source.request_stop();
                           },
                           source.get_token()};
-  EXPECT_THROW(improve(c.mesh, c.field, kBounds, {}, c.outward_mm, Stage(progress, "improve", 0, 1)), Cancelled);
+  EXPECT_THROW(improve(c.mesh, c.field, kBounds, {}, c.shifts, Stage(progress, "improve", 0, 1)), Cancelled);
   expect_sound(c.mesh);
 }
 
