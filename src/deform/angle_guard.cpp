@@ -32,32 +32,29 @@ constexpr std::array<Vec3, 14> kSearchDirections = {Vec3{1, 0, 0},
                                                     Vec3{kDiagonal, -kDiagonal, kDiagonal},
                                                     Vec3{-kDiagonal, kDiagonal, kDiagonal}};
 
-std::array<Vec3, 4> corners_with(const TissueMesh& mesh, TetId t, VertexId moved, Vec3 p) {
-  std::array<Vec3, 4> corners;
-  for (std::size_t n = 0; n < 4; ++n) {
-    const VertexId v = mesh.tets[t][n];
-    corners[n] = v == moved ? p : mesh.points_mm[v];
-  }
-  return corners;
-}
-
 }  // namespace
 
-bool AngleGuard::fits(VertexId v, Vec3 p) const {
+// The tetrahedra at v; good until the thread's next call.
+const StarSlack& AngleGuard::star(VertexId v) const {
+  static thread_local StarSlack star;
+  star.clear();
   for (const TetId t : topology_.tets_of_vertex[v]) {
-    const auto [a, b, c, d] = corners_with(mesh_, t, v, p);
-    const ShapeBounds& bounds = mesh_.tissues[t] == 0 ? kCushionBounds : bounds_;
-    if (!within(bounds, a, b, c, d)) return false;
+    const auto& tet = mesh_.tets[t];
+    const auto& order = kCornersFrom[static_cast<std::size_t>(std::ranges::find(tet, v) - tet.begin())];
+    star.add(mesh_.points_mm[tet[order[1]]], mesh_.points_mm[tet[order[2]]], mesh_.points_mm[tet[order[3]]],
+             mesh_.tissues[t] == 0);
   }
-  return true;
+  return star;
 }
 
-double AngleGuard::advance(VertexId v, Vec3 p, int halvings) const {
+double AngleGuard::advance(VertexId v, Vec3 p, int halvings) const { return advance(star(v), v, p, halvings); }
+
+double AngleGuard::advance(const StarSlack& star, VertexId v, Vec3 p, int halvings) const {
   const Vec3 from = mesh_.points_mm[v];
   double share = 1;
   for (int n = 0; n <= halvings; ++n, share *= 0.5) {
     const Vec3 at = from + share * (p - from);
-    if (fits(v, at)) {
+    if (star.fits(bounds_, at)) {
       mesh_.points_mm[v] = at;
       return share;
     }
@@ -66,12 +63,13 @@ double AngleGuard::advance(VertexId v, Vec3 p, int halvings) const {
 }
 
 double AngleGuard::advance_best(VertexId v, Vec3 goal, const Mat3& metric, double reach) const {
-  const double share = advance(v, goal, 3);
+  const StarSlack& around = star(v);
+  const double share = advance(around, v, goal, 3);
   const double scale = 1 / (kReachOfEdge * kReachOfEdge * reach * reach);
   const auto of_way = [&](Vec3 at) { return scale * dot(at - goal, metric * (at - goal)); };
   const auto of_slack = [](double slack) { return slack < kSpare ? (kSpare - slack) * (kSpare - slack) : 0; };
   Vec3& best = mesh_.points_mm[v];
-  double least = of_way(best) + of_slack(slack(v, best, -1));
+  double least = of_way(best) + of_slack(around.at(bounds_, best, -1));
   if (share == 1 && least == 0) return 1;
   double radius = reach;
   for (int round = 0; round < kSearchRounds; ++round) {
@@ -82,7 +80,7 @@ double AngleGuard::advance_best(VertexId v, Vec3 goal, const Mat3& metric, doubl
       const double way = of_way(at);
       if (way >= least) continue;
       const double needed = std::max(0.0, kSpare - std::sqrt(least - way));
-      const double s = slack(v, at, needed);
+      const double s = around.at(bounds_, at, needed);
       if (s < needed || way + of_slack(s) >= least) continue;
       best = at;
       least = way + of_slack(s);
@@ -93,26 +91,18 @@ double AngleGuard::advance_best(VertexId v, Vec3 goal, const Mat3& metric, doubl
   return share;
 }
 
-double AngleGuard::slack(VertexId v, Vec3 p, double enough) const {
-  double least = 1;
-  for (const TetId t : topology_.tets_of_vertex[v]) {
-    least = std::min(least, slack_of(t, v, p));
-    if (least < enough) break;
-  }
-  return least;
-}
+double AngleGuard::slack(VertexId v, Vec3 p, double enough) const { return star(v).at(bounds_, p, enough); }
 
-double AngleGuard::slack_of(TetId t, VertexId v, Vec3 p) const {
-  const auto [a, b, c, d] = corners_with(mesh_, t, v, p);
-  if (mesh_.tissues[t] == 0) return within(kCushionBounds, a, b, c, d) ? 1 : -1;
-  const TetGeometry g(a, b, c, d);
-  if (!(g.volume6 > 0)) return -1;
-  const auto [largest, smallest] = g.cosine_range();
-  // The mean ratio's cube needs no cube root; divided by its slope at the bound it is like the ratio itself there.
-  const double bound = bounds_.min_mean_ratio;
-  const double cube = 432 * g.volume6 * g.volume6 / (g.edges * g.edges * g.edges);
-  const double of_ratio = (cube - bound * bound * bound) / (3 * bound * bound);
-  return std::min({bounds_.largest_cos - largest, smallest - bounds_.smallest_cos, of_ratio});
+void AngleGuard::make_even(VertexId v, Vec3 mean) const {
+  const StarSlack& around = star(v);
+  const Vec3 from = mesh_.points_mm[v];
+  const double before = std::max(0.0, around.at(bounds_, from, -1));
+  for (const double share : {1.0, 0.3}) {
+    const Vec3 at = from + share * (mean - from);
+    if (around.at(bounds_, at, before) < before) continue;
+    mesh_.points_mm[v] = at;
+    break;
+  }
 }
 
 void for_each_vertex_by_colour(const MeshTopology& topology, const Stage& stage,
@@ -146,15 +136,7 @@ void relax_interior(TissueMesh& mesh, const MeshTopology& topology, const AngleG
     }
     mean = (1.0 / static_cast<double>(neighbours.size())) * mean;
     edge /= static_cast<double>(neighbours.size());
-    if (norm_squared(mean - from) >= kStill * kStill * edge * edge) {
-      const double before = std::max(0.0, guard.slack(v, from, -1));
-      for (const double share : {1.0, 0.3}) {
-        const Vec3 at = from + share * (mean - from);
-        if (guard.slack(v, at, before) < before) continue;
-        mesh.points_mm[v] = at;
-        break;
-      }
-    }
+    if (norm_squared(mean - from) >= kStill * kStill * edge * edge) guard.make_even(v, mean);
   });
 }
 

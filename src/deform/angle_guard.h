@@ -8,6 +8,7 @@
 
 #include "base/stage.h"
 #include "mesh/adjacency.h"
+#include "mesh/star_slack.h"
 #include "mesh/tet_shape.h"
 #include "mesh/tissue_mesh.h"
 
@@ -20,9 +21,6 @@ class AngleGuard {
   AngleGuard(TissueMesh& mesh, const MeshTopology& topology, const ShapeBounds& bounds)
       : mesh_(mesh), topology_(topology), bounds_(bounds) {}
 
-  /// Whether all tetrahedra at v stay inside the bounds when v is at p.
-  bool fits(VertexId v, Vec3 p) const;
-
   /// Moves v towards p as far as it goes: all the way, or 1/2, 1/4, ... of it, `halvings` times. Returns
   /// the share gone, 0 if none. Neighbours of v must not move at the same time.
   double advance(VertexId v, Vec3 p, int halvings) const;
@@ -33,12 +31,15 @@ class AngleGuard {
   /// Returns what advance() does. Neighbours of v must not move at the same time.
   double advance_best(VertexId v, Vec3 goal, const Mat3& metric, double reach) const;
 
-  /// How far the worst tetrahedron at v is from its bounds when v is at p; negative outside of them, 1 at
-  /// the most. Cushion tetrahedra count only when they turn over. Stops at the first that is below `enough`.
+  /// How far the worst tetrahedron at v is from its bounds when v is at p (see StarSlack::at()).
   double slack(VertexId v, Vec3 p, double enough) const;
 
+  /// Moves v to `mean`, or 0.3 of the way, where that does not make the worst of its tetrahedra worse.
+  void make_even(VertexId v, Vec3 mean) const;
+
  private:
-  double slack_of(TetId t, VertexId v, Vec3 p) const;
+  const StarSlack& star(VertexId v) const;
+  double advance(const StarSlack& star, VertexId v, Vec3 p, int halvings) const;
 
   TissueMesh& mesh_;
   const MeshTopology& topology_;

@@ -2,13 +2,15 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <vector>
 
 #include "base/vec.h"
 #include "deform/ring_filling.h"
 #include "deform/search_directions.h"
 #include "mesh/edge_ring.h"
-#include "mesh/vertex_star.h"
+#include "mesh/star_slack.h"
 
 namespace anatomesh {
 namespace {
@@ -19,8 +21,7 @@ using Tet = std::array<VertexId, 4>;
 
 class ShapeImprover {
  public:
-  ShapeImprover(MeshEditor& mesh, const ShapeBounds& bounds)
-      : mesh_(mesh), bounds_(bounds), star_(mesh), filling_(mesh) {}
+  ShapeImprover(MeshEditor& mesh, const ShapeBounds& bounds) : mesh_(mesh), bounds_(bounds), filling_(mesh) {}
 
   double slack_of(const Tet& t) const {
     return slack(bounds_, mesh_.point(t[0]), mesh_.point(t[1]), mesh_.point(t[2]), mesh_.point(t[3]));
@@ -33,12 +34,15 @@ class ShapeImprover {
   bool remove_face(TetId t, std::size_t opposite);
   bool move_vertex(VertexId v);
 
-  double worst_at(Vec3 p, double enough);
+  struct Surroundings {
+    Vec3 mean;  // of the neighbours
+    double shortest2 = std::numeric_limits<double>::infinity();
+  };
+  Surroundings gather(VertexId v);
 
   MeshEditor& mesh_;
   const ShapeBounds& bounds_;
-  VertexStar star_;
-  std::size_t culprit_ = 0;  // the tetrahedron of the star that was the worst at the last place tried
+  StarSlack star_;
   EdgeRing ring_;
   RingFilling filling_;
   std::vector<Tet> fresh_;
@@ -60,11 +64,8 @@ bool ShapeImprover::remove_edge(VertexId a, VertexId b) {
 }
 
 bool ShapeImprover::remove_face(TetId t, std::size_t opposite) {
-  // Even permutations that begin with the opposite corner.
-  constexpr std::array<std::array<std::size_t, 4>, 4> kFrom = {
-      {{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 3, 0, 1}, {3, 2, 1, 0}}};
   const Tet tet = mesh_.tet(t);
-  const auto& order = kFrom[opposite];
+  const auto& order = kCornersFrom[opposite];
   const VertexId a = tet[order[0]], x = tet[order[1]], y = tet[order[2]], z = tet[order[3]];
   TetId other = t;
   for (const TetId s : mesh_.tets_at(x)) {
@@ -82,50 +83,44 @@ bool ShapeImprover::remove_face(TetId t, std::size_t opposite) {
   return true;
 }
 
-// Of the star's tetrahedra with its centre at p; gives up below `enough`. Begins with the last one that was the worst:
-// most places are turned down for it.
-double ShapeImprover::worst_at(Vec3 p, double enough) {
-  const auto slack_with = [&](std::size_t tet) {
-    std::array<Vec3, 4> c;
-    for (std::size_t n = 0; n < 4; ++n) {
-      const auto corner = star_.tets()[tet].corners[n];
-      c[n] = corner == 0 ? p : star_.points()[corner];
+// The tetrahedra at v go into star_, their other vertices' mean and the shortest edge's square are returned.
+ShapeImprover::Surroundings ShapeImprover::gather(VertexId v) {
+  const Vec3 at = mesh_.point(v);
+  star_.clear();
+  Surroundings around;
+  for (const TetId t : mesh_.tets_at(v)) {
+    const Tet& tet = mesh_.tet(t);
+    const auto& order = kCornersFrom[static_cast<std::size_t>(std::ranges::find(tet, v) - tet.begin())];
+    std::array<Vec3, 3> other;
+    for (std::size_t n = 0; n < 3; ++n) {
+      other[n] = mesh_.point(tet[order[n + 1]]);
+      around.shortest2 = std::min(around.shortest2, norm_squared(other[n] - at));
+      around.mean += other[n];
     }
-    return slack(bounds_, c[0], c[1], c[2], c[3]);
-  };
-  double worst = slack_with(culprit_);
-  for (std::size_t tet = 0; tet < star_.tets().size() && worst >= enough; ++tet) {
-    const double s = slack_with(tet);
-    if (s >= worst) continue;
-    worst = s;
-    culprit_ = tet;
+    star_.add(other[0], other[1], other[2], false);
   }
-  return worst;
+  // A neighbour counts once for each of its tetrahedra here.
+  around.mean = (1.0 / static_cast<double>(3 * mesh_.tets_at(v).size())) * around.mean;
+  return around;
 }
 
 // A search along fixed directions with steps that get smaller.
 bool ShapeImprover::move_vertex(VertexId v) {
   if (mesh_.tissues_at(v) != 1 || mesh_.is_outer(v)) return false;
-  star_.gather(v);
-  culprit_ = 0;
-  Vec3 at = star_.points()[0], mean;
-  double shortest2 = norm_squared(star_.points()[1] - at);
-  for (std::size_t n = 1; n < star_.points().size(); ++n) {
-    shortest2 = std::min(shortest2, norm_squared(star_.points()[n] - at));
-    mean += star_.points()[n];
-  }
-  mean = (1.0 / static_cast<double>(star_.points().size() - 1)) * mean;
-  const double before = worst_at(at, -2);
+  const auto [mean, shortest2] = gather(v);
+  const Vec3 from = mesh_.point(v);
+  Vec3 at = from;
+  const double before = star_.at(bounds_, at, -1);
   double best = before;
   const auto try_at = [&](Vec3 p) {
-    const double there = worst_at(p, best + kGain);
+    const double there = star_.at(bounds_, p, best + kGain);
     if (there <= best + kGain) return false;
     best = there;
     at = p;
     return true;
   };
   for (const double share : {1.0, 0.5, 0.2}) {
-    if (try_at(star_.points()[0] + share * (mean - star_.points()[0]))) break;
+    if (try_at(from + share * (mean - from))) break;
   }
   double step = 0.3 * std::sqrt(shortest2);
   for (int n = 0; n < 5; ++n) {

@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "mesh/adjacency.h"
+#include "mesh/tet_shape.h"
 
 namespace anatomesh {
 
@@ -40,9 +41,6 @@ std::uint8_t MeshEditor::count_tissues(VertexId v) const {
 // A vertex inside has a ball of tetrahedra around it: each face at it is there twice, in opposite orientations, and the
 // hashes of all of them, signed by orientation, add up to zero.
 bool MeshEditor::lies_on_bare_face(VertexId v) const {
-  // Even permutations, by the corner that they begin with.
-  constexpr std::array<std::array<std::size_t, 4>, 4> kOrder = {
-      {{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 3, 0, 1}, {3, 2, 1, 0}}};
   const auto hash = [](VertexId low, VertexId high) {
     std::uint64_t h = (std::uint64_t{low} << 32u | high) * 0x9e3779b97f4a7c15u;
     h = (h ^ (h >> 32u)) * 0xd6e8feb86659fd93u;
@@ -51,7 +49,7 @@ bool MeshEditor::lies_on_bare_face(VertexId v) const {
   std::uint64_t sum = 0;
   for (const TetId t : tets_at(v)) {
     const auto& tet = mesh_.tets[t];
-    const auto& order = kOrder[static_cast<std::size_t>(std::ranges::find(tet, v) - tet.begin())];
+    const auto& order = kCornersFrom[static_cast<std::size_t>(std::ranges::find(tet, v) - tet.begin())];
     for (std::size_t n = 0; n < 3; ++n) {
       const VertexId x = tet[order[1 + n]], y = tet[order[1 + (n + 1) % 3]];
       sum += x < y ? hash(x, y) : -hash(y, x);

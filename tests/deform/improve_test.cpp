@@ -50,10 +50,7 @@ void expect_same_topology(const TissueMesh& mesh, const TissueMesh& before) {
 /// An image, its field and its lattice.
 struct Case {
   explicit Case(const LabelImage& labels)
-      : image(make_tissue_image(labels)),
-        field(image),
-        mesh(testing::lattice_of(image)),
-        shifts(image) {}
+      : image(make_tissue_image(labels)), field(image), mesh(testing::lattice_of(image)), shifts(image) {}
   TissueImage image;
   SurfaceField field;
   TissueMesh mesh;

@@ -1,0 +1,87 @@
+#include "mesh/star_slack.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <vector>
+
+#include "base/vec.h"
+
+namespace anatomesh {
+namespace {
+
+struct Face {
+  Vec3 b, c, d;
+  bool is_cushion;
+};
+
+class RandomStars {
+ public:
+  explicit RandomStars(unsigned seed) : random_(seed) {}
+  Vec3 point(double size) { return {size * number_(random_), size * number_(random_), size * number_(random_)}; }
+  // Faces around the origin that see it mostly from the right side.
+  std::vector<Face> star(std::size_t tets) {
+    std::vector<Face> faces;
+    while (faces.size() < tets) {
+      Face f{point(1), point(1), point(1), faces.size() % 5 == 4};
+      if (six_volumes({}, f.b, f.c, f.d) < 0 && faces.size() % 7 != 6) std::swap(f.c, f.d);
+      faces.push_back(f);
+    }
+    return faces;
+  }
+
+ private:
+  std::mt19937 random_;
+  std::uniform_real_distribution<double> number_{-1, 1};
+};
+
+double slack_of(const ShapeBounds& bounds, const Face& f, Vec3 p) {
+  if (f.is_cushion) return within(kCushionBounds, p, f.b, f.c, f.d) ? 1 : -1;
+  return slack(bounds, p, f.b, f.c, f.d);
+}
+
+TEST(StarSlack, IsTheLeastOfItsTetrahedra) {
+  const ShapeBounds bounds = ShapeBounds::from_degrees(5, 170, 0.05);
+  RandomStars random(1);
+  StarSlack star;
+  for (int n = 0; n < 3000; ++n) {
+    const std::vector<Face> faces = random.star(1 + static_cast<std::size_t>(n) % 40);
+    star.clear();
+    for (const Face& f : faces) star.add(f.b, f.c, f.d, f.is_cushion);
+    const Vec3 p = random.point(0.2);
+    double least = 1;
+    for (const Face& f : faces) least = std::min(least, slack_of(bounds, f, p));
+    EXPECT_NEAR(star.at(bounds, p, -2), least, 1e-9);
+  }
+}
+
+TEST(StarSlack, StopsBelowWhatIsEnough) {
+  const ShapeBounds bounds = ShapeBounds::from_degrees(5, 170, 0.05);
+  RandomStars random(2);
+  StarSlack star;
+  for (int n = 0; n < 3000; ++n) {
+    star.clear();
+    for (const Face& f : random.star(30)) star.add(f.b, f.c, f.d, f.is_cushion);
+    const Vec3 p = random.point(0.2);
+    const double least = star.at(bounds, p, -2), enough = n % 2 ? 0.1 : -0.5;
+    const double there = star.at(bounds, p, enough);
+    EXPECT_GE(there, least);
+    EXPECT_TRUE(least >= enough ? there == least : there < enough);
+    EXPECT_EQ(star.fits(bounds, p), least >= 0);
+  }
+}
+
+TEST(StarSlack, AFlatTetrahedronIsOutside) {
+  StarSlack star;
+  star.add({1, 0, 0}, {0, 1, 0}, {-1, -1, 0}, false);
+  EXPECT_LT(star.at(ShapeBounds{}, {0, 0, 0}, -2), 0);
+  star.clear();
+  star.add({1, 0, 0}, {1, 0, 0}, {0, 1, 0}, true);  // without an area
+  EXPECT_LT(star.at(ShapeBounds{}, {0, 0, 1}, -2), 0);
+}
+
+TEST(StarSlack, WithoutTetrahedraAllPlacesAreGood) { EXPECT_EQ(StarSlack().at(ShapeBounds{}, {1, 2, 3}, 0), 1); }
+
+}  // namespace
+}  // namespace anatomesh
