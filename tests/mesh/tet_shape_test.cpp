@@ -133,11 +133,12 @@ TEST(TetShape, SlackIsTheSmallestMargin) {
     for (int n = 0; n < 20000; ++n) {
       const Corners c = random_tet(random);
       const ShapeMeasure shape = measure(c);
+      const double bound = bounds.min_mean_ratio;
+      const double of_ratio = (std::pow(shape.mean_ratio, 3) - std::pow(bound, 3)) / (3 * bound * bound);
       const double margin =
           shape.mean_ratio == 0
-              ? -2
-              : std::min({bounds.largest_cos - shape.largest_cos, shape.smallest_cos - bounds.smallest_cos,
-                          shape.mean_ratio - bounds.min_mean_ratio});
+              ? -1
+              : std::min({bounds.largest_cos - shape.largest_cos, shape.smallest_cos - bounds.smallest_cos, of_ratio});
       EXPECT_NEAR(slack(bounds, c[0], c[1], c[2], c[3]), margin, 1e-12);
     }
   }
