@@ -415,6 +415,7 @@ void PieceMender::join_piece(std::uint32_t piece, const std::vector<TetId>& tets
   };
   std::priority_queue<Step, std::vector<Step>, std::greater<>> open;
   std::unordered_map<TetId, TetId> came_from;
+  std::unordered_map<TetId, double> cost_of;
   for (const TetId t : tets) {
     if (complex_.tissue(t) == tissue) open.push({0, t, t});  // another path may have taken it
   }
@@ -436,7 +437,9 @@ void PieceMender::join_piece(std::uint32_t piece, const std::vector<TetId>& tets
         continue;
       }
       if (touches_other_component(other, component)) continue;
-      const double cost = path_cost(other, tissue);
+      const auto [known, is_new] = cost_of.try_emplace(other);
+      if (is_new) known->second = path_cost(other, tissue);
+      const double cost = known->second;
       if (step.cost + cost < kReach) open.push({step.cost + cost, other, step.tet});
     }
   }

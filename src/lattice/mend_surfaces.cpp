@@ -326,9 +326,37 @@ std::vector<VertexId> singular_vertices(const TetComplex& complex) {
   return singular_among(complex, std::move(all));
 }
 
+// A search that ends as soon as all neighbours are reached, mostly after a few steps.
 bool neighbours_hang_together(const TetComplex& complex, TetId t) {
-  const std::array<TetId, 1> alone = {t};
-  return hangs_together_without(complex, alone, complex.tissue(t), alone);
+  const auto& corners = complex.mesh.tets[t];
+  const TissueId tissue = complex.tissue(t);
+  std::array<TetId, 4> wanted;
+  std::size_t missing = 0;
+  for (const TetId other : complex.behind[t]) {
+    if (other != t && complex.tissue(other) == tissue) wanted[missing++] = other;
+  }
+  if (missing < 2) return true;
+  const auto is_around = [&](TetId other) {
+    const auto& tet = complex.mesh.tets[other];
+    return std::any_of(tet.begin(), tet.end(), [&](VertexId v) {
+      return v == corners[0] || v == corners[1] || v == corners[2] || v == corners[3];
+    });
+  };
+  thread_local std::vector<TetId> reached;
+  reached.assign(1, wanted[--missing]);
+  for (std::size_t i = 0; i < reached.size(); ++i) {
+    for (const TetId other : complex.behind[reached[i]]) {
+      if (other == t || complex.tissue(other) != tissue) continue;
+      if (std::find(reached.begin(), reached.end(), other) != reached.end() || !is_around(other)) continue;
+      reached.push_back(other);
+      const auto end = wanted.begin() + static_cast<std::ptrdiff_t>(missing);
+      const auto found = std::find(wanted.begin(), end, other);
+      if (found == end) continue;
+      *found = wanted[--missing];
+      if (missing == 0) return true;
+    }
+  }
+  return false;
 }
 
 std::vector<VertexId> mend_single_tets(TetComplex& complex, Pieces& pieces, std::vector<VertexId> singular,
