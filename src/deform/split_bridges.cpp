@@ -116,7 +116,7 @@ void split_bridges(TissueMesh& mesh, const ShapeBounds& asked, const Stage& stag
     }
     if (!changed) break;
   }
-  mesh = with_cushion_last(mesh);
+  mesh = in_spatial_order(mesh);
 }
 
 }  // namespace anatomesh

@@ -26,4 +26,8 @@ std::size_t tissue_tets(const TissueMesh& mesh);
 /// alone; otherwise in the same order. The stages rely on it. Vertices of no tetrahedron are dropped.
 TissueMesh with_cushion_last(const TissueMesh& mesh);
 
+/// The same with tetrahedra that lie near each other near each other in memory, too: along a Z-order curve. What walks
+/// over the mesh finds most of what it needs in the cache.
+TissueMesh in_spatial_order(const TissueMesh& mesh);
+
 }  // namespace anatomesh
