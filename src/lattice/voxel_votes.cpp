@@ -281,6 +281,19 @@ std::array<TissueId, 4> VoxelVotes::tissues_at_corners(TetRef t) const {
   return tissues;
 }
 
+// The tissue of all voxels from `low` to `high`; none where they differ.
+std::optional<TissueId> VoxelVotes::only_tissue(const std::array<int, 3>& low, const std::array<int, 3>& high) const {
+  const TissueId first = image_.at_or_background(low[0], low[1], low[2]);
+  for (int k = low[2]; k <= high[2]; ++k) {
+    for (int j = low[1]; j <= high[1]; ++j) {
+      for (int i = low[0]; i <= high[0]; ++i) {
+        if (image_.at_or_background(i, j, k) != first) return {};
+      }
+    }
+  }
+  return first;
+}
+
 // Trilinear interpolation of the tissues' indicator functions, summed over five points inside.
 TissueId VoxelVotes::interpolated_tissue(const std::array<Vec3, 4>& corners) const {
   constexpr double kIn = 0.55, kOff = 0.15;
@@ -289,19 +302,25 @@ TissueId VoxelVotes::interpolated_tissue(const std::array<Vec3, 4>& corners) con
                                                              {kOff, kIn, kOff, kOff},
                                                              {kOff, kOff, kIn, kOff},
                                                              {kOff, kOff, kOff, kIn}}};
-  Ballot& ballot = thread_ballot();
-  for (const auto& weights : kPoints) {
-    const Vec3 x = blend(corners, weights);
-    std::array<int, 3> low;
-    Vec3 share;
+  std::array<Vec3, 5> points;
+  std::array<std::array<int, 3>, 5> lows;
+  std::array<int, 3> low, high;
+  for (std::size_t n = 0; n < 5; ++n) {
+    points[n] = blend(corners, kPoints[n]);
     for (std::size_t a = 0; a < 3; ++a) {
-      low[a] = static_cast<int>(std::floor(x[a]));
-      share[a] = x[a] - low[a];
+      const int at = lows[n][a] = static_cast<int>(std::floor(points[n][a]));
+      low[a] = n == 0 ? at : std::min(low[a], at);
+      high[a] = n == 0 ? at + 1 : std::max(high[a], at + 1);
     }
+  }
+  if (const auto only = only_tissue(low, high)) return *only;
+  Ballot& ballot = thread_ballot();
+  for (std::size_t n = 0; n < 5; ++n) {
+    const Vec3 share = {points[n].x - lows[n][0], points[n].y - lows[n][1], points[n].z - lows[n][2]};
     for (int corner = 0; corner < 8; ++corner) {
       const int dx = corner & 1, dy = corner >> 1 & 1, dz = corner >> 2;
       const double w = (dx ? share.x : 1 - share.x) * (dy ? share.y : 1 - share.y) * (dz ? share.z : 1 - share.z);
-      ballot.add(image_.at_or_background(low[0] + dx, low[1] + dy, low[2] + dz), w);
+      ballot.add(image_.at_or_background(lows[n][0] + dx, lows[n][1] + dy, lows[n][2] + dz), w);
     }
   }
   return ballot.winner().first;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -74,6 +75,7 @@ class VoxelVotes {
   void hand_down_again(TetRef parent);
   Vec3 position(std::uint32_t voxel, int level) const;
   Vote count_votes(std::span<const std::uint32_t> voxels, const std::array<Vec3, 4>& corners) const;
+  std::optional<TissueId> only_tissue(const std::array<int, 3>& low, const std::array<int, 3>& high) const;
   TissueId interpolated_tissue(const std::array<Vec3, 4>& corners) const;
   std::array<Vec3, 4> corners_in_voxels(TetRef t) const;
   Vec3 to_voxel_index(LatticePoint point, int level) const;
