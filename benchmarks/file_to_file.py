@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 """Times `anatomesh mesh` from image file to mesh file, with the parameters of the method's paper unless told otherwise
-(8 mm lattice, fidelity 0.95, face pattern, 10 iterations).
+(8 mm lattice, fidelity 0.95 of the lattice, face pattern, 10 iterations), and with --cgal CGAL's Mesh_3 on the same image
+at the same number of tetrahedra (+-10 %), run by run in turn: sequential and with two threads, with its optimisers and
+without.
 
-usage: file_to_file.py IMAGE [IMAGE ...] [--program PATH] [--runs N] [--options "..."]
+usage: file_to_file.py IMAGE [IMAGE ...] [--program PATH] [--runs N] [--options "..."] [--cgal]
 
-Prints a row an image: tetrahedra, the median of the seconds of N runs with their range, tetrahedra a second, and the
-largest peak memory. Nothing else should run on the machine; compare figures of one run only.
+Prints a row a mesher: tetrahedra, the median of the seconds of N runs with their range, tetrahedra a second, peak memory,
+and how many times as fast Anatomesh is. Nothing else should run on the machine; compare figures of one run only.
 """
 import argparse
 import json
@@ -13,40 +15,94 @@ import pathlib
 import statistics
 import sys
 import tempfile
+import types
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT / "tools"))
+sys.path[:0] = [str(ROOT / "tools"), str(ROOT / "benchmarks")]
+import compare_peers  # noqa: E402
 from measured_run import run  # noqa: E402
 
-PAPER = "--bcc-size 8 --fidelity 0.95 --non-connectivity face --iterations 10"
+PAPER = "--bcc-size 8 --fidelity 0.95 --fidelity-stage lattice --non-connectivity face --iterations 10"
+CGAL = {
+    "CGAL": [],
+    "CGAL, 2 threads": ["--threads", "2"],
+    "CGAL, 2 threads, no optimisers": ["--threads", "2", "--no-optimisers"],
+}
 
 
-def time_image(program, image, options, runs):
-    with tempfile.TemporaryDirectory() as folder:
-        mesh, report, log = (pathlib.Path(folder, name) for name in ("mesh.vtu", "report.json", "log"))
-        command = [program, "mesh", image, "-o", mesh, *options]
-        status, _, _ = run([*command, "--report", report], log)
-        if status != 0:
-            sys.exit(f"file_to_file: {image}: status {status}\n" + log.read_text(encoding="utf-8"))
-        tets = json.loads(report.read_text(encoding="utf-8"))["assessment"]["whole"]["quality"]["tets"]
-        measured = [run([*command, "--quiet"], log) for _ in range(runs)]
-    seconds = sorted(s for _, s, _ in measured)
-    return tets, seconds, max(mb for _, _, mb in measured)
+def counted(command, report, log):
+    """Tetrahedra of a first run, whose time does not count."""
+    status, _, _ = run([*command, "--report", report], log)
+    if status != 0:
+        sys.exit(f"file_to_file: {command[2]}: status {status}\n" + log.read_text(encoding="utf-8"))
+    return json.loads(report.read_text(encoding="utf-8"))["assessment"]
+
+
+def cgal_size(arguments, image, assessment, folder):
+    """The facet size at which CGAL's mesh has as many tetrahedra as ours."""
+    wanted = assessment["whole"]["quality"]["tets"]
+    volume_mm3 = sum(t["fidelity"]["image_volume_mm3"] for t in assessment["tissues"])
+    limits = types.SimpleNamespace(cgal=arguments.cgal_program, timeout=600, memory=None)
+    size, tried = 1.3 * (volume_mm3 / wanted) ** (1 / 3), {}
+    for _ in range(8):
+        result = compare_peers.run_cgal(limits, image, size, ["--threads", "2"], folder / "trial.vtu", folder / "cgal.log")
+        if "tets" not in result:
+            sys.exit(f"file_to_file: CGAL: {result['failed']}")
+        if compare_peers.off(result["tets"], wanted) <= 0.05:
+            break
+        tried[size] = result["tets"]
+        size = compare_peers.next_size(tried, wanted)
+    return size
+
+
+def time_image(arguments, image):
+    """{mesher: (tetrahedra, sorted seconds, peak MB)}"""
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        mesh, report, log = folder / "mesh.vtu", folder / "report.json", folder / "log"
+        ours = [arguments.program, "mesh", image, "-o", mesh, *arguments.options.split()]
+        assessment = counted(ours, report, log)
+        tets = {"Anatomesh": assessment["whole"]["quality"]["tets"]}
+        commands = {"Anatomesh": [*ours, "--quiet"]}
+        if arguments.cgal:
+            size = cgal_size(arguments, image, assessment, folder)
+            sizes = ["--facet-size", f"{size:.6g}", "--cell-size", f"{1.5 * size:.6g}", "--facet-distance", f"{size / 4:.6g}"]
+            commands |= {peer: [arguments.cgal_program, image, "-o", folder / "cgal.vtu", *sizes, *options]
+                         for peer, options in CGAL.items()}
+        runs = {mesher: [] for mesher in commands}
+        for _ in range(arguments.runs):
+            for mesher, command in commands.items():
+                log.unlink(missing_ok=True)
+                status, seconds, memory_mb = run(command, log)
+                if status != 0:
+                    sys.exit(f"file_to_file: {mesher}: {log.read_text(encoding='utf-8')}")
+                if mesher != "Anatomesh":
+                    tets[mesher] = json.loads(log.read_text(encoding="utf-8").strip().splitlines()[-1])["tets"]
+                runs[mesher].append((seconds, memory_mb))
+    return {m: (tets[m], sorted(s for s, _ in r), max(mb for _, mb in r)) for m, r in runs.items()}
+
+
+def print_rows(image, measured):
+    rate = {m: tets / statistics.median(seconds) for m, (tets, seconds, _) in measured.items()}
+    for mesher, (tets, seconds, memory) in measured.items():
+        print(f"| {pathlib.Path(image).name.split('.')[0]} | {mesher} | {tets:,} | {statistics.median(seconds):.2f}"
+              f" ({seconds[0]:.2f} to {seconds[-1]:.2f}) | {rate[mesher]:,.0f} | {memory:.0f} |"
+              f" {rate['Anatomesh'] / rate[mesher]:.2f} |", flush=True)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("images", nargs="+", metavar="IMAGE")
     parser.add_argument("--program", default=ROOT / "build/release/bin/anatomesh")
+    parser.add_argument("--cgal-program", default=ROOT / "build/release/bin/cgal_mesh_3")
+    parser.add_argument("--cgal", action="store_true", help="run CGAL in turn")
     parser.add_argument("--runs", type=int, default=5)
     parser.add_argument("--options", default=PAPER, help=f"[{PAPER}]")
     arguments = parser.parse_args()
-    print("| image | tetrahedra | seconds, median (range) | tetrahedra a second | peak memory MB |\n|---|---|---|---|---|")
+    print("| image | mesher | tetrahedra | seconds, median (range) | tetrahedra a second | peak memory MB | Anatomesh is"
+          " faster by |\n|---|---|---|---|---|---|---|")
     for image in arguments.images:
-        tets, seconds, memory = time_image(arguments.program, image, arguments.options.split(), arguments.runs)
-        median = statistics.median(seconds)
-        print(f"| {pathlib.Path(image).name.split('.')[0]} | {tets:,} | {median:.2f} ({seconds[0]:.2f} to {seconds[-1]:.2f})"
-              f" | {tets / median:,.0f} | {memory:.0f} |", flush=True)
+        print_rows(image, time_image(arguments, image))
 
 
 if __name__ == "__main__":

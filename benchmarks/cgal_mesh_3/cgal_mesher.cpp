@@ -9,7 +9,9 @@
 #include <CGAL/Mesh_triangulation_3.h>
 #include <CGAL/make_mesh_3.h>
 #include <CGAL/version.h>
+#include <tbb/global_control.h>
 
+#include <algorithm>
 #include <chrono>
 #include <unordered_map>
 #include <utility>
@@ -22,10 +24,15 @@ namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Domain = CGAL::Labeled_mesh_domain_3<Kernel>;
-using Triangulation = CGAL::Mesh_triangulation_3<Domain, CGAL::Default, CGAL::Sequential_tag>::type;
-using Complex = CGAL::Mesh_complex_3_in_triangulation_3<Triangulation>;
-using Criteria = CGAL::Mesh_criteria_3<Triangulation>;
 namespace named = CGAL::parameters;
+
+/// CGAL's types for one thread (CGAL::Sequential_tag) or several (CGAL::Parallel_tag).
+template <class Concurrency>
+struct Types {
+  using Triangulation = typename CGAL::Mesh_triangulation_3<Domain, CGAL::Default, Concurrency>::type;
+  using Complex = CGAL::Mesh_complex_3_in_triangulation_3<Triangulation>;
+  using Criteria = CGAL::Mesh_criteria_3<Triangulation>;
+};
 
 /// Both images must outlive the domain, which refers to them.
 Domain make_domain(const CgalImage& crop, const CGAL::Image_3& weights) {
@@ -34,16 +41,20 @@ Domain make_domain(const CgalImage& crop, const CGAL::Image_3& weights) {
                                                   named::weights = weights);
 }
 
-Complex make_complex(const Domain& domain, const CgalOptions& options) {
-  const Criteria criteria(named::facet_angle = options.facet_angle_deg, named::facet_size = options.facet_size_mm,
-                          named::facet_distance = options.facet_distance_mm,
-                          named::cell_radius_edge_ratio = options.cell_radius_edge_ratio,
-                          named::cell_size = options.cell_size_mm);
+template <class Concurrency>
+auto make_complex(const Domain& domain, const CgalOptions& options) {
+  using Complex = typename Types<Concurrency>::Complex;
+  const typename Types<Concurrency>::Criteria criteria(
+      named::facet_angle = options.facet_angle_deg, named::facet_size = options.facet_size_mm,
+      named::facet_distance = options.facet_distance_mm, named::cell_radius_edge_ratio = options.cell_radius_edge_ratio,
+      named::cell_size = options.cell_size_mm);
+  if (!options.optimise) return CGAL::make_mesh_3<Complex>(domain, criteria, named::no_perturb(), named::no_exude());
   return CGAL::make_mesh_3<Complex>(domain, criteria, named::perturb(named::sliver_bound = options.sliver_bound_deg),
                                     named::exude(named::sliver_bound = options.sliver_bound_deg));
 }
 
-Vec3 to_physical(const LabelImage& image, const CgalImage& crop, const Triangulation::Point& point) {
+template <class Point>
+Vec3 to_physical(const LabelImage& image, const CgalImage& crop, const Point& point) {
   const Vec3 s = image.spacing_mm;
   const double local[3] = {point.x() + static_cast<double>(crop.corner_vox[0]) * s.x,
                            point.y() + static_cast<double>(crop.corner_vox[1]) * s.y,
@@ -62,6 +73,7 @@ bool is_mirrored(const Mat3& d) {
 }
 
 /// CGAL's tetrahedra are positively oriented in the image's frame.
+template <class Complex>
 TetMesh to_mesh(const LabelImage& image, const CgalImage& crop, const Complex& complex) {
   TetMesh mesh;
   std::unordered_map<const void*, VertexId> numbers;
@@ -98,9 +110,14 @@ TetMesh mesh_with_cgal(const LabelImage& image, const CgalOptions& options, Cgal
   times.weights_s = seconds_since(begin);
   begin = std::chrono::steady_clock::now();
   const Domain domain = make_domain(crop, weights);
-  const Complex complex = make_complex(domain, options);
-  times.mesh_s = seconds_since(begin);
-  TetMesh mesh = to_mesh(image, crop, complex);
+  const auto mesh_by = [&]<class Concurrency>(Concurrency) {
+    const auto complex = make_complex<Concurrency>(domain, options);
+    times.mesh_s = seconds_since(begin);
+    return to_mesh(image, crop, complex);
+  };
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                  static_cast<std::size_t>(std::max(options.threads, 1)));
+  TetMesh mesh = options.threads > 1 ? mesh_by(CGAL::Parallel_tag()) : mesh_by(CGAL::Sequential_tag());
   if (mesh.tets.empty()) throw MeshingFailed("CGAL gave no tetrahedron");
   return mesh;
 }

@@ -14,6 +14,8 @@ struct CgalOptions {
   double cell_radius_edge_ratio = 3;  ///< largest circumradius over shortest edge of a tetrahedron
   double cell_size_mm = 4;            ///< largest circumradius of a tetrahedron
   double weights_sigma_mm = 0;        ///< of the Gaussian that makes the label weights; 0: no weights
+  bool optimise = true;               ///< perturbation and exudation
+  int threads = 1;                    ///< more than 1: CGAL's parallel mesher
   double sliver_bound_deg = 0;        ///< perturbation and exudation stop there; 0: CGAL's default, as far as they can
 };
 
@@ -29,7 +31,7 @@ const char* cgal_version();
 /// Meshes all labels but 0; the mesh lies in the image's physical space (LPS, mm) and carries the image's labels.
 /// The image is cropped to its labelled voxels and four voxels of background, since CGAL takes the space beyond
 /// the outermost voxel centres for background: tissue at the image's border is not cut off.
-/// Sequential; the same bytes in every run. Memory: with weights one copy of the crop a label.
+/// With one thread the same bytes in every run. Memory: with weights one copy of the crop a label.
 /// Throws InvalidInput when nothing is labelled, MeshingFailed when CGAL gives no tetrahedron.
 TetMesh mesh_with_cgal(const LabelImage& image, const CgalOptions& options, CgalTimes& times);
 

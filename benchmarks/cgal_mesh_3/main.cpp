@@ -32,6 +32,8 @@ void add_options(CLI::App& app, Arguments& a) {
   app.add_option("--cell-size", o.cell_size_mm, "mm")->capture_default_str()->check(CLI::PositiveNumber);
   app.add_flag("--weights", a.weights, "label weights, for smooth surfaces");
   app.add_option("--weights-sigma", o.weights_sigma_mm, "mm; of the weights [the largest voxel spacing]");
+  app.add_flag("!--no-optimisers", o.optimise, "no perturbation and no exudation");
+  app.add_option("--threads", o.threads, "more than 1: the parallel mesher")->capture_default_str();
   app.add_option("--sliver-bound", o.sliver_bound_deg, "degrees; where the optimisers stop, 0: as far as they can")
       ->capture_default_str();
 }
