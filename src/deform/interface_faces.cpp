@@ -74,7 +74,8 @@ std::optional<BorderPlane> border_at(const TissueMesh& mesh, const TissueImage& 
   const Vec3 centre = (1.0 / 3) * (a + b + c), inward = cross(b - a, c - a);
   const Vec3 voxel = image.spacing_mm;
   const double longest = std::sqrt(std::max({norm_squared(b - a), norm_squared(c - b), norm_squared(a - c)}));
-  const double reach = std::max(longest, 2 * std::max({voxel.x, voxel.y, voxel.z}));
+  const double widest = std::max({voxel.x, voxel.y, voxel.z});
+  const double reach = std::clamp(longest, 2 * widest, 16 * widest);
   if (distance_from_border(image, centre) > reach) return {};
   const double step = 0.5 * std::min({voxel.x, voxel.y, voxel.z});
   const Vec3 along = (-step / norm(inward)) * inward;

@@ -281,8 +281,12 @@ std::array<TissueId, 4> VoxelVotes::tissues_at_corners(TetRef t) const {
   return tissues;
 }
 
-// The tissue of all voxels from `low` to `high`; none where they differ.
+// The tissue of all voxels from `low` to `high`; none where they differ, or are too many to look at.
 std::optional<TissueId> VoxelVotes::only_tissue(const std::array<int, 3>& low, const std::array<int, 3>& high) const {
+  constexpr int kMost = 5;  // along an axis
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (std::int64_t{high[a]} - low[a] >= kMost) return {};
+  }
   const TissueId first = image_.at_or_background(low[0], low[1], low[2]);
   for (int k = low[2]; k <= high[2]; ++k) {
     for (int j = low[1]; j <= high[1]; ++j) {
