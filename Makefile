@@ -2,17 +2,20 @@
 #   make demo     install, build, mesh a brain atlas of 116 tissues, show how good the mesh is
 #   make test     install, build, run all tests
 .DEFAULT_GOAL := help
-.PHONY: help packages build demo test asan check-style clean
+.PHONY: help packages build bench demo test asan check-style clean
 
 JOBS ?= $(shell nproc)
 PYTHON ?= /usr/bin/python3
 ATLAS := /usr/share/mricron/templates/aal.nii.gz
 PROGRAM := build/release/bin/anatomesh
+# Images that `make bench` runs from file to file beside CGAL.
+BENCH_IMAGES ?= $(ATLAS)
 
 help:
 	@echo "make demo         mesh a brain atlas of 116 tissues into demo/, with tables and a picture"
 	@echo "make test         build with warnings as errors and run all tests"
 	@echo "make build        build the program: $(PROGRAM)"
+	@echo "make bench        measure the time of each stage, and of the whole way beside CGAL; writes docs/speed.md"
 	@echo "make asan         run the library's tests under the address and undefined-behaviour sanitizers"
 	@echo "make check-style  check the format and the layers of the sources"
 	@echo "make clean        remove build/ and demo/"
@@ -42,6 +45,15 @@ test: packages
 	$(MAKE) --no-print-directory asan
 	ctest --preset ci -j $(JOBS)
 	@echo "next: make demo, or read CONTRIBUTING.md before a change"
+
+bench: packages
+	@tools/install_packages.sh libcgal-dev
+	cmake --preset release -DANATOMESH_BUILD_PEERS=ON
+	cmake --build --preset release -j $(JOBS) --target anatomesh bench_stages cgal_mesh_3
+	benchmarks/file_to_file.py $(BENCH_IMAGES) --cgal --page docs/speed.md
+	benchmarks/suite.py
+	benchmarks/instructions.py
+	@echo "next: look at docs/speed.md"
 
 asan: packages
 	cmake --preset asan

@@ -4,7 +4,7 @@
 at the same number of tetrahedra (+-10 %), run by run in turn: sequential and with two threads, with its optimisers and
 without.
 
-usage: file_to_file.py IMAGE [IMAGE ...] [--program PATH] [--runs N] [--options "..."] [--cgal]
+usage: file_to_file.py IMAGE [IMAGE ...] [--program PATH] [--runs N] [--options "..."] [--cgal] [--page docs/speed.md]
 
 Prints a row a mesher: tetrahedra, the median of the seconds of N runs with their range, tetrahedra a second, peak memory,
 and how many times as fast Anatomesh is. Nothing else should run on the machine; compare figures of one run only.
@@ -21,6 +21,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT / "tools"), str(ROOT / "benchmarks")]
 import compare_peers  # noqa: E402
 from measured_run import run  # noqa: E402
+from pages import replace_between  # noqa: E402
 
 PAPER = "--bcc-size 8 --fidelity 0.95 --fidelity-stage lattice --non-connectivity face --iterations 10"
 CGAL = {
@@ -82,12 +83,11 @@ def time_image(arguments, image):
     return {m: (tets[m], sorted(s for s, _ in r), max(mb for _, mb in r)) for m, r in runs.items()}
 
 
-def print_rows(image, measured):
+def rows(image, measured):
     rate = {m: tets / statistics.median(seconds) for m, (tets, seconds, _) in measured.items()}
-    for mesher, (tets, seconds, memory) in measured.items():
-        print(f"| {pathlib.Path(image).name.split('.')[0]} | {mesher} | {tets:,} | {statistics.median(seconds):.2f}"
-              f" ({seconds[0]:.2f} to {seconds[-1]:.2f}) | {rate[mesher]:,.0f} | {memory:.0f} |"
-              f" {rate['Anatomesh'] / rate[mesher]:.2f} |", flush=True)
+    return [f"| {pathlib.Path(image).name.split('.')[0]} | {mesher} | {tets:,} | {statistics.median(seconds):.2f}"
+            f" ({seconds[0]:.2f} to {seconds[-1]:.2f}) | {rate[mesher]:,.0f} | {memory:.0f} |"
+            f" {rate['Anatomesh'] / rate[mesher]:.2f} |" for mesher, (tets, seconds, memory) in measured.items()]
 
 
 def main():
@@ -98,11 +98,16 @@ def main():
     parser.add_argument("--cgal", action="store_true", help="run CGAL in turn")
     parser.add_argument("--runs", type=int, default=5)
     parser.add_argument("--options", default=PAPER, help=f"[{PAPER}]")
+    parser.add_argument("--page", type=pathlib.Path, help="page to write the table into")
     arguments = parser.parse_args()
-    print("| image | mesher | tetrahedra | seconds, median (range) | tetrahedra a second | peak memory MB | Anatomesh is"
-          " faster by |\n|---|---|---|---|---|---|---|")
+    lines = ["| image | mesher | tetrahedra | seconds, median (range) | tetrahedra a second | peak memory MB | Anatomesh is"
+             " faster by |", "|---|---|---|---|---|---|---|"]
+    print("\n".join(lines))
     for image in arguments.images:
-        print_rows(image, time_image(arguments, image))
+        lines += rows(image, time_image(arguments, image))
+        print("\n".join(lines[-len(CGAL) - 1 if arguments.cgal else -1:]), flush=True)
+    if arguments.page:
+        replace_between(arguments.page, "<!-- files:begin -->", "<!-- files:end -->", "\n".join(lines))
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs the Debian 12 packages that Anatomesh is built and shown with; those already there are left alone.
-# Run as root, or as a user with sudo.
+# Run as root, or as a user with sudo. Arguments are further packages.
 set -euo pipefail
 
 packages=(
@@ -9,9 +9,10 @@ packages=(
   libinsighttoolkit5-dev libvtk9-dev libtbb-dev libeigen3-dev libnanoflann-dev
   libcli11-dev nlohmann-json3-dev libfmt-dev zlib1g-dev
   # to test
-  libgtest-dev clang-format
+  libgtest-dev clang-format libbenchmark-dev valgrind
   # for the demo: the images, and pictures without a display
   mricron-data python3 python3-vtk9 python3-numpy xvfb xauth libgl1-mesa-dri
+  "$@"
 )
 
 missing=()

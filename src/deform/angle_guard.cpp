@@ -44,6 +44,7 @@ const StarSlack& AngleGuard::star(VertexId v) const {
     star.add(mesh_.points_mm[tet[order[1]]], mesh_.points_mm[tet[order[2]]], mesh_.points_mm[tet[order[3]]],
              mesh_.tissues[t] == 0);
   }
+  star.close();
   return star;
 }
 

@@ -99,6 +99,7 @@ ShapeImprover::Surroundings ShapeImprover::gather(VertexId v) {
     }
     star_.add(other[0], other[1], other[2], false);
   }
+  star_.close();
   // A neighbour counts once for each of its tetrahedra here.
   around.mean = (1.0 / static_cast<double>(3 * mesh_.tets_at(v).size())) * around.mean;
   return around;

@@ -65,32 +65,49 @@ ANATOMESH_VECTOR_CLONES void slack_of_block(const StarSlack::Block& block, const
   }
 }
 
+// What depends on the faces opposite to the vertex only.
+ANATOMESH_VECTOR_CLONES void measure_faces(StarSlack::Block& block) {
+  for (std::size_t n = 0; n < StarSlack::kLanes; ++n) {
+    const double cx = block.cx[n] - block.bx[n], cy = block.cy[n] - block.by[n], cz = block.cz[n] - block.bz[n];
+    const double dx = block.dx[n] - block.bx[n], dy = block.dy[n] - block.by[n], dz = block.dz[n] - block.bz[n];
+    const double ex = dx - cx, ey = dy - cy, ez = dz - cz;
+    const double nx = cy * dz - cz * dy, ny = cz * dx - cx * dz, nz = cx * dy - cy * dx;
+    const double area2 = std::sqrt(nx * nx + ny * ny + nz * nz);
+    const double per_area2 = 1 / area2;
+    block.nx[n] = per_area2 * nx;
+    block.ny[n] = per_area2 * ny;
+    block.nz[n] = per_area2 * nz;
+    block.area2[n] = area2;
+    block.edges[n] = (cx * cx + cy * cy + cz * cz) + (dx * dx + dy * dy + dz * dz) + (ex * ex + ey * ey + ez * ez);
+  }
+}
+
+void set(StarSlack::Block& block, std::size_t lane, Vec3 b, Vec3 c, Vec3 d, bool is_cushion) {
+  block.bx[lane] = b.x, block.by[lane] = b.y, block.bz[lane] = b.z;
+  block.cx[lane] = c.x, block.cy[lane] = c.y, block.cz[lane] = c.z;
+  block.dx[lane] = d.x, block.dy[lane] = d.y, block.dz[lane] = d.z;
+  block.cushion[lane] = is_cushion ? 1 : 0;
+}
+
 }  // namespace
 
 void StarSlack::add(Vec3 b, Vec3 c, Vec3 d, bool is_cushion) {
   const std::size_t n = count_ % kLanes;
   if (n == 0 && blocks_.size() <= count_ / kLanes) blocks_.emplace_back();
-  Block& block = blocks_[count_ / kLanes];
-  const Vec3 bc = c - b, bd = d - b, normal = cross(bc, bd);
-  const double area2 = norm(normal);
-  const Vec3 unit = (1 / area2) * normal;
-  const double edges = norm_squared(bc) + norm_squared(bd) + norm_squared(d - c);
-  const auto set = [&](std::size_t lane) {
-    block.bx[lane] = b.x, block.by[lane] = b.y, block.bz[lane] = b.z;
-    block.cx[lane] = c.x, block.cy[lane] = c.y, block.cz[lane] = c.z;
-    block.dx[lane] = d.x, block.dy[lane] = d.y, block.dz[lane] = d.z;
-    block.nx[lane] = unit.x, block.ny[lane] = unit.y, block.nz[lane] = unit.z;
-    block.area2[lane] = area2;
-    block.edges[lane] = edges;
-    block.cushion[lane] = is_cushion ? 1 : 0;
-  };
-  set(n);
-  // The rest of a block that is begun repeats its first tetrahedron.
-  if (n == 0) {
-    for (std::size_t lane = 1; lane < kLanes; ++lane) set(lane);
-    if (count_ == 0) first_ = 0;
-  }
+  set(blocks_[count_ / kLanes], n, b, c, d, is_cushion);
   ++count_;
+}
+
+// The last block is filled up with its first tetrahedron.
+void StarSlack::close() {
+  first_ = 0;
+  if (const std::size_t used = count_ % kLanes; used != 0) {
+    Block& last = blocks_[count_ / kLanes];
+    const Vec3 b = {last.bx[0], last.by[0], last.bz[0]}, c = {last.cx[0], last.cy[0], last.cz[0]},
+               d = {last.dx[0], last.dy[0], last.dz[0]};
+    for (std::size_t lane = used; lane < kLanes; ++lane) set(last, lane, b, c, d, last.cushion[0] != 0);
+  }
+  for (std::size_t n = 0; n < (count_ + kLanes - 1) / kLanes; ++n) measure_faces(blocks_[n]);
 }
 
 double StarSlack::at(const ShapeBounds& bounds, Vec3 p, double enough) const {

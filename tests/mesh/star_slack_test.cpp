@@ -49,6 +49,7 @@ TEST(StarSlack, IsTheLeastOfItsTetrahedra) {
     const std::vector<Face> faces = random.star(1 + static_cast<std::size_t>(n) % 40);
     star.clear();
     for (const Face& f : faces) star.add(f.b, f.c, f.d, f.is_cushion);
+    star.close();
     const Vec3 p = random.point(0.2);
     double least = 1;
     for (const Face& f : faces) least = std::min(least, slack_of(bounds, f, p));
@@ -63,6 +64,7 @@ TEST(StarSlack, StopsBelowWhatIsEnough) {
   for (int n = 0; n < 3000; ++n) {
     star.clear();
     for (const Face& f : random.star(30)) star.add(f.b, f.c, f.d, f.is_cushion);
+    star.close();
     const Vec3 p = random.point(0.2);
     const double least = star.at(bounds, p, -2), enough = n % 2 ? 0.1 : -0.5;
     const double there = star.at(bounds, p, enough);
@@ -75,9 +77,11 @@ TEST(StarSlack, StopsBelowWhatIsEnough) {
 TEST(StarSlack, AFlatTetrahedronIsOutside) {
   StarSlack star;
   star.add({1, 0, 0}, {0, 1, 0}, {-1, -1, 0}, false);
+  star.close();
   EXPECT_LT(star.at(ShapeBounds{}, {0, 0, 0}, -2), 0);
   star.clear();
   star.add({1, 0, 0}, {1, 0, 0}, {0, 1, 0}, true);  // without an area
+  star.close();
   EXPECT_LT(star.at(ShapeBounds{}, {0, 0, 1}, -2), 0);
 }
 
