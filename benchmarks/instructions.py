@@ -59,11 +59,11 @@ def main():
     arguments = parser.parse_args()
     counts = count(arguments.program)
     if arguments.write:
-        KEPT.write_text(json.dumps({s: round(counts[s]) for s in STAGES}, indent=2) + "\n", encoding="utf-8")
+        KEPT.write_text(json.dumps({s: round(counts[s], 2) for s in STAGES}, indent=2) + "\n", encoding="utf-8")
     kept = json.loads(KEPT.read_text(encoding="utf-8"))
     slow = []
     for stage in STAGES:
-        share = counts[stage] / max(kept[stage], 1)
+        share = counts[stage] / kept[stage]
         print(f"{stage:14} {counts[stage]:10,.0f} million instructions, {share:.2f} of what is kept")
         if share > MOST:
             slow.append(stage)

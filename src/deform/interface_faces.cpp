@@ -37,14 +37,14 @@ void append_sides(const TissueMesh& mesh, const MeshTopology& topology, VertexId
   }
 }
 
-// The border plane that p is farthest beyond.
+// The border plane that p is farthest beyond, or on.
 std::optional<BorderPlane> border_crossed(const TissueImage& image, Vec3 p) {
   std::optional<BorderPlane> crossed;
   double farthest = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double low = image.low_border_mm(axis), high = image.high_border_mm(axis);
     const double beyond = std::max(low - p[axis], p[axis] - high);
-    if (beyond <= farthest) continue;
+    if (beyond < farthest) continue;
     farthest = beyond;
     crossed = BorderPlane{axis, p[axis] < low ? low : high};
   }
@@ -77,13 +77,14 @@ std::optional<BorderPlane> border_at(const TissueMesh& mesh, const TissueImage& 
   const double widest = std::max({voxel.x, voxel.y, voxel.z});
   const double reach = std::clamp(longest, 2 * widest, 16 * widest);
   if (distance_from_border(image, centre) > reach) return {};
-  const double step = 0.5 * std::min({voxel.x, voxel.y, voxel.z});
+  constexpr double kMostSteps = 64;
+  const double step = std::max(0.5 * std::min({voxel.x, voxel.y, voxel.z}), reach / kMostSteps);
   const Vec3 along = (-step / norm(inward)) * inward;
   const int steps = static_cast<int>(std::ceil(reach / step));
   std::optional<BorderPlane> nearest;
   int least = steps + 1;
-  for (int n = -steps; n < steps; ++n) {
-    const Vec3 p = centre + static_cast<double>(n) * along, q = p + along;
+  for (int n = -steps; n <= steps && n < least; ++n) {
+    const Vec3 p = centre + (n - 0.5) * along, q = p + along;
     if (std::abs(n) >= least || border_crossed(image, p) || nearest_voxel(image, p) != face.high) continue;
     const auto border = border_crossed(image, q);
     if (!border && nearest_voxel(image, q) == face.high) continue;

@@ -20,7 +20,7 @@ struct BorderPlane {
 struct InterfaceFace {
   std::array<VertexId, 3> vertices;
   TissueId low, high;
-  std::optional<BorderPlane> border;  ///< where the other tissue is what lies outside the image
+  std::optional<BorderPlane> border;  ///< where its tissue ends because the image does
 };
 
 /// All interface faces of a mesh and those at each vertex; stays true while vertices move.

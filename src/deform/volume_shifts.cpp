@@ -1,7 +1,6 @@
 #include "deform/volume_shifts.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "base/vec.h"
 

@@ -14,7 +14,8 @@ class VolumeShifts {
  public:
   explicit VolumeShifts(const TissueImage& image) : image_(image), by_low_(image.labels.size()) {}
 
-  /// Corrects the shifts by what the tissues lack in the mesh as it is. Cost: linear in the faces.
+  /// Corrects the shifts by what the tissues lack in the mesh as it is. Cost: linear in the faces, and for
+  /// each in the number of tissues that its lower tissue touches.
   void update(const TissueMesh& mesh, const InterfaceFaces& interfaces);
 
   /// How far beyond where it is the boundary of two tissues is to lie, mm from the lower number to the higher; a share

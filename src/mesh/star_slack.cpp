@@ -61,7 +61,8 @@ ANATOMESH_VECTOR_CLONES void slack_of_block(const StarSlack::Block& block, const
     const double of_tissue = std::min(angles, (ratio3 - limits.ratio3) * limits.per_ratio3);
     const double of_cushion = ratio3 >= limits.cushion_ratio3 ? 1.0 : -1.0;
     const double inside = block.cushion[n] != 0 ? of_cushion : of_tissue;
-    slack[n] = volume6 > 0 ? inside : -1.0;
+    // A degenerate face makes NaN, which is no slack.
+    slack[n] = volume6 > 0 && inside == inside ? inside : -1.0;
   }
 }
 

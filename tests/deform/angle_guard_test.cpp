@@ -107,7 +107,7 @@ double room_at(const Guarded& g, VertexId v, Vec3 p) {
   return room;
 }
 
-TEST(AngleGuard, FitsAgreesWithTheAngles) {
+TEST(AngleGuard, SlackAgreesWithTheAngles) {
   Guarded g(testing::vessel_tree());
   RandomMoves moves(g.mesh, 3);
   for (int n = 0; n < 5000; ++n) {
@@ -122,9 +122,7 @@ TEST(AngleGuard, FitsAgreesWithTheAngles) {
     }();
     if (room < -1e-5) {
       EXPECT_LT(g.guard.slack(v, p, -1), 0);
-      EXPECT_LT(g.guard.slack(v, p, -1), 0);
     } else if (room > 1e-5 && in_tissues_only) {
-      EXPECT_GE(g.guard.slack(v, p, -1), 0);
       EXPECT_GT(g.guard.slack(v, p, -1), 0);
     }
   }

@@ -177,8 +177,8 @@ TEST(Settle, FacesAtTheBorderOfTheImageAreFlatAndOnIt) {
   }
   EXPECT_GT(corners, 1000u);
   // The edges of the image's box are as sharp as the bounds allow.
-  EXPECT_GT(exact, corners * 4 / 5);
-  EXPECT_GT(in_plane_exact, in_plane * 85 / 100);
+  EXPECT_GT(exact, corners * 9 / 10);
+  EXPECT_GT(in_plane_exact, in_plane * 96 / 100);
 }
 
 double distance_from_nearest_border(const TissueImage& image, Vec3 p) {

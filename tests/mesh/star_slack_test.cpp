@@ -85,6 +85,24 @@ TEST(StarSlack, AFlatTetrahedronIsOutside) {
   EXPECT_LT(star.at(ShapeBounds{}, {0, 0, 1}, -2), 0);
 }
 
+TEST(StarSlack, NoPlaceWhereATetrahedronDegeneratesIsInside) {
+  const ShapeBounds bounds = ShapeBounds::from_degrees(20, 150, 0.3);
+  RandomStars random(3);
+  StarSlack star;
+  for (int n = 0; n < 2000; ++n) {
+    const Vec3 b = random.point(1), c = random.point(1), d = random.point(1);
+    star.clear();
+    star.add(b, c, d, false);
+    star.close();
+    EXPECT_LT(star.at(bounds, c, -2), 0);
+    EXPECT_LT(star.at(bounds, 0.5 * (c + d), -2), 0);
+    star.add(b, d, c, false);  // of the other orientation: one of both is turned over anywhere
+    star.close();
+    EXPECT_LT(star.at(bounds, c, -2), 0);
+    EXPECT_LT(star.at(bounds, random.point(1), -2), 0);
+  }
+}
+
 TEST(StarSlack, WithoutTetrahedraAllPlacesAreGood) { EXPECT_EQ(StarSlack().at(ShapeBounds{}, {1, 2, 3}, 0), 1); }
 
 }  // namespace

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <random>
 #include <set>
 
+#include "base/vec.h"
 #include "mesh/cube_mesh.h"
 #include "mesh/mesh_checks.h"
 
@@ -44,6 +46,27 @@ TEST(WithCushionLast, KeepsTheOrderWithin) {
     EXPECT_EQ(corner(sorted, t + 6), corner(mesh, t + 12));
     EXPECT_EQ(corner(sorted, t + 12), corner(mesh, t + 6));
   }
+}
+
+TEST(InSpatialOrder, IsAPermutationWithTheCushionLast) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> number(-3, 8);
+  TissueMesh mesh;
+  for (int n = 0; n < 300; ++n) mesh.points_mm.push_back({number(random), number(random), 2});  // flat
+  for (VertexId t = 0; t < 1000; ++t) {
+    mesh.tets.push_back({t % 300, (t * 7 + 1) % 300, (t * 11 + 2) % 300, (t * 13 + 3) % 300});
+    mesh.tissues.push_back(static_cast<TissueId>(t % 3));
+  }
+  const TissueMesh sorted = in_spatial_order(mesh);
+  EXPECT_EQ(content_of(sorted), content_of(mesh));
+  EXPECT_TRUE(std::ranges::is_sorted(sorted.tissues, {}, [](TissueId t) { return t == 0; }));
+  double before = 0, after = 0;  // from each tetrahedron's first corner to the next one's
+  for (std::size_t t = 1; t < mesh.tets.size(); ++t) {
+    before += norm(mesh.points_mm[mesh.tets[t][0]] - mesh.points_mm[mesh.tets[t - 1][0]]);
+    after += norm(sorted.points_mm[sorted.tets[t][0]] - sorted.points_mm[sorted.tets[t - 1][0]]);
+  }
+  EXPECT_LT(after, before);
+  EXPECT_TRUE(in_spatial_order(TissueMesh{}).tets.empty());
 }
 
 }  // namespace
