@@ -58,11 +58,11 @@ ANATOMESH_VECTOR_CLONES void slack_of_block(const StarSlack::Block& block, const
         block.edges[n] + (bx * bx + by * by + bz * bz) + (cx * cx + cy * cy + cz * cz) + (dx * dx + dy * dy + dz * dz);
     const double ratio3 = 432 * volume6 * volume6 / (edges * edges * edges);
     const double angles = std::min(limits.largest_cos - largest, smallest - limits.smallest_cos);
-    const double of_tissue = std::min(angles, (ratio3 - limits.ratio3) * limits.per_ratio3);
+    // In this order: a degenerate face makes the angles NaN, and then the mean ratio is what counts.
+    const double of_tissue = std::min((ratio3 - limits.ratio3) * limits.per_ratio3, angles);
     const double of_cushion = ratio3 >= limits.cushion_ratio3 ? 1.0 : -1.0;
     const double inside = block.cushion[n] != 0 ? of_cushion : of_tissue;
-    // A degenerate face makes NaN, which is no slack.
-    slack[n] = volume6 > 0 && inside == inside ? inside : -1.0;
+    slack[n] = volume6 > 0 ? inside : -1.0;
   }
 }
 
