@@ -46,7 +46,7 @@ test: packages
 	ctest --preset ci -j $(JOBS)
 	@echo "next: make demo, or read CONTRIBUTING.md before a change"
 
-bench: packages
+bench:
 	@tools/install_packages.sh libcgal-dev
 	cmake --preset release -DANATOMESH_BUILD_PEERS=ON
 	cmake --build --preset release -j $(JOBS) --target anatomesh bench_stages cgal_mesh_3

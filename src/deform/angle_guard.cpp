@@ -39,10 +39,8 @@ const StarSlack& AngleGuard::star(VertexId v) const {
   static thread_local StarSlack star;
   star.clear();
   for (const TetId t : topology_.tets_of_vertex[v]) {
-    const auto& tet = mesh_.tets[t];
-    const auto& order = kCornersFrom[static_cast<std::size_t>(std::ranges::find(tet, v) - tet.begin())];
-    star.add(mesh_.points_mm[tet[order[1]]], mesh_.points_mm[tet[order[2]]], mesh_.points_mm[tet[order[3]]],
-             mesh_.tissues[t] == 0);
+    const auto [b, c, d] = corners_after(mesh_.tets[t], v);
+    star.add(mesh_.points_mm[b], mesh_.points_mm[c], mesh_.points_mm[d], mesh_.tissues[t] == 0);
   }
   star.close();
   return star;

@@ -89,11 +89,10 @@ ShapeImprover::Surroundings ShapeImprover::gather(VertexId v) {
   star_.clear();
   Surroundings around;
   for (const TetId t : mesh_.tets_at(v)) {
-    const Tet& tet = mesh_.tet(t);
-    const auto& order = kCornersFrom[static_cast<std::size_t>(std::ranges::find(tet, v) - tet.begin())];
+    const auto others = corners_after(mesh_.tet(t), v);
     std::array<Vec3, 3> other;
     for (std::size_t n = 0; n < 3; ++n) {
-      other[n] = mesh_.point(tet[order[n + 1]]);
+      other[n] = mesh_.point(others[n]);
       around.shortest2 = std::min(around.shortest2, norm_squared(other[n] - at));
       around.mean += other[n];
     }

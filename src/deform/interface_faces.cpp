@@ -59,11 +59,9 @@ double distance_from_border(const TissueImage& image, Vec3 p) {
   return least;
 }
 
-TissueId nearest_voxel(const TissueImage& image, Vec3 p) {
-  std::array<int, 3> index;
-  for (std::size_t a = 0; a < 3; ++a)
-    index[a] = static_cast<int>(std::lround(p[a] / image.spacing_mm[a] - static_cast<double>(image.first[a])));
-  return image.at_or_background(index[0], index[1], index[2]);
+TissueId tissue_at(const TissueImage& image, Vec3 p) {
+  const auto [i, j, k] = image.index_at(p);
+  return image.at_or_background(i, j, k);
 }
 
 // The border plane where the tissue behind a face toward the background ends, seen along the face's normal: none where
@@ -71,7 +69,7 @@ TissueId nearest_voxel(const TissueImage& image, Vec3 p) {
 std::optional<BorderPlane> border_at(const TissueMesh& mesh, const TissueImage& image, const InterfaceFace& face) {
   const Vec3 a = mesh.points_mm[face.vertices[0]], b = mesh.points_mm[face.vertices[1]],
              c = mesh.points_mm[face.vertices[2]];
-  const Vec3 centre = (1.0 / 3) * (a + b + c), inward = cross(b - a, c - a);
+  const Vec3 centre = centroid(mesh, face), inward = area_vector(mesh, face);
   const Vec3 voxel = image.spacing_mm;
   const double longest = std::sqrt(std::max({norm_squared(b - a), norm_squared(c - b), norm_squared(a - c)}));
   const double widest = std::max({voxel.x, voxel.y, voxel.z});
@@ -85,9 +83,9 @@ std::optional<BorderPlane> border_at(const TissueMesh& mesh, const TissueImage& 
   int least = steps + 1;
   for (int n = -steps; n <= steps && n < least; ++n) {
     const Vec3 p = centre + (n - 0.5) * along, q = p + along;
-    if (std::abs(n) >= least || border_crossed(image, p) || nearest_voxel(image, p) != face.high) continue;
+    if (std::abs(n) >= least || border_crossed(image, p) || tissue_at(image, p) != face.high) continue;
     const auto border = border_crossed(image, q);
-    if (!border && nearest_voxel(image, q) == face.high) continue;
+    if (!border && tissue_at(image, q) == face.high) continue;
     least = std::abs(n);
     nearest = border;
   }
@@ -124,6 +122,16 @@ VertexLists<std::uint32_t> faces_of_vertices(std::size_t vertex_count, const std
 }
 
 }  // namespace
+
+Vec3 centroid(const TissueMesh& mesh, const InterfaceFace& face) {
+  return (1.0 / 3) *
+         (mesh.points_mm[face.vertices[0]] + mesh.points_mm[face.vertices[1]] + mesh.points_mm[face.vertices[2]]);
+}
+
+Vec3 area_vector(const TissueMesh& mesh, const InterfaceFace& face) {
+  const Vec3 a = mesh.points_mm[face.vertices[0]];
+  return 0.5 * cross(mesh.points_mm[face.vertices[1]] - a, mesh.points_mm[face.vertices[2]] - a);
+}
 
 InterfaceFaces find_interface_faces(const TissueMesh& mesh, const MeshTopology& topology, const TissueImage& image) {
   constexpr std::size_t kGrain = 4096;

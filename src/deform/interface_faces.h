@@ -23,6 +23,11 @@ struct InterfaceFace {
   std::optional<BorderPlane> border;  ///< where its tissue ends because the image does
 };
 
+Vec3 centroid(const TissueMesh& mesh, const InterfaceFace& face);
+
+/// As long as the face is large (mm^2), from the tissue with the lower number to the other.
+Vec3 area_vector(const TissueMesh& mesh, const InterfaceFace& face);
+
 /// All interface faces of a mesh and those at each vertex; stays true while vertices move.
 struct InterfaceFaces {
   std::vector<InterfaceFace> faces;

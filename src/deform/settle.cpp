@@ -107,16 +107,6 @@ class Settling {
     return std::ranges::any_of(topology_.tissues_of_vertex[v], [&](TissueId t) { return is_tiny(field_.image(), t); });
   }
 
-  Vec3 centroid(const InterfaceFace& face) const {
-    return (1.0 / 3) *
-           (mesh_.points_mm[face.vertices[0]] + mesh_.points_mm[face.vertices[1]] + mesh_.points_mm[face.vertices[2]]);
-  }
-
-  Vec3 area_vector(const InterfaceFace& face) const {
-    const Vec3 a = mesh_.points_mm[face.vertices[0]];
-    return 0.5 * cross(mesh_.points_mm[face.vertices[1]] - a, mesh_.points_mm[face.vertices[2]] - a);
-  }
-
   // None far from the boundary, and where the tissues lie the other way round: the far side of a thin sheet.
   std::optional<Plane> plane_at(Vec3 p, double share_difference, Vec3 gradient, Vec3 area) const {
     const double steep = norm(gradient);
@@ -127,7 +117,7 @@ class Settling {
   }
 
   Plane plane_at_face(const InterfaceFace& face) const {
-    const Vec3 area = area_vector(face);
+    const Vec3 area = area_vector(mesh_, face);
     if (face.border) {
       Vec3 normal;
       normal[face.border->axis] = 1;
@@ -136,7 +126,7 @@ class Settling {
     const std::array<TissueId, 2> pair = {face.low, face.high};
     std::array<double, 2> share;
     std::array<Vec3, 2> gradient;
-    const Vec3 centre = centroid(face);
+    const Vec3 centre = centroid(mesh_, face);
     field_.evaluate(centre, pair, share, gradient);
     Plane plane = plane_at(centre, share[1] - share[0], gradient[1] - gradient[0], area).value_or(Plane{});
     plane.level += shifts_.between(face.low, face.high);
@@ -152,7 +142,7 @@ class Settling {
     for (const std::uint32_t f : interfaces_.of_vertex[v]) {
       const Plane& plane = planes_[f];
       const double weight = plane.area / total;
-      const Vec3 centre = centroid(interfaces_.faces[f]), opposite = 1.5 * centre - 0.5 * from;
+      const Vec3 centre = centroid(mesh_, interfaces_.faces[f]), opposite = 1.5 * centre - 0.5 * from;
       quadric.add(plane.normal, plane.level - dot(plane.normal, centre), kOfFaces * weight);
       quadric.add(plane.normal, dot(plane.normal, opposite - from), kOfNormals * weight);
     }
@@ -167,9 +157,9 @@ class Settling {
       const auto known =
           std::ranges::find_if(pairs, [&](const PairAtVertex& p) { return p.low == face.low && p.high == face.high; });
       if (known == pairs.end()) {
-        pairs.push_back({face.low, face.high, area_vector(face)});
+        pairs.push_back({face.low, face.high, area_vector(mesh_, face)});
       } else {
-        known->area += area_vector(face);
+        known->area += area_vector(mesh_, face);
       }
     }
     return pairs;

@@ -24,10 +24,9 @@ struct Enclosed {
   Enclosed(const TissueMesh& mesh, const InterfaceFaces& interfaces, std::size_t tissues)
       : volume_mm3(tissues, 0), area_mm2(tissues, 0), contacts(tissues) {
     for (const InterfaceFace& face : interfaces.faces) {
-      const Vec3 a = mesh.points_mm[face.vertices[0]], b = mesh.points_mm[face.vertices[1]],
-                 c = mesh.points_mm[face.vertices[2]];
-      const Vec3 out = 0.5 * cross(b - a, c - a);
-      const double part = dot(a + b + c, out) / 9;
+      const Vec3 out = area_vector(mesh, face);
+      const auto& [a, b, c] = face.vertices;
+      const double part = dot(mesh.points_mm[a] + mesh.points_mm[b] + mesh.points_mm[c], out) / 9;
       volume_mm3[face.low] += part;
       volume_mm3[face.high] -= part;
       if (face.border) continue;

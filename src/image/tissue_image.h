@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -55,6 +56,13 @@ struct TissueImage {
   /// Volume of a tissue's voxels.
   double volume_mm3(std::size_t tissue) const {
     return static_cast<double>(counts[tissue]) * spacing_mm.x * spacing_mm.y * spacing_mm.z;
+  }
+  /// Index in the crop, or beyond it, of the voxel that a point lies in.
+  std::array<int, 3> index_at(Vec3 p_mm) const {
+    std::array<int, 3> index;
+    for (std::size_t a = 0; a < 3; ++a)
+      index[a] = static_cast<int>(std::lround(p_mm[a] / spacing_mm[a] - static_cast<double>(first[a])));
+    return index;
   }
   Vec3 centre_mm(int i, int j, int k) const {
     return {static_cast<double>(first[0] + i) * spacing_mm.x, static_cast<double>(first[1] + j) * spacing_mm.y,

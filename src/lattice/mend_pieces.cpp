@@ -466,11 +466,9 @@ void PieceMender::join_piece(std::uint32_t piece, const std::vector<TetId>& tets
 }  // namespace
 
 std::optional<std::uint32_t> voxel_at(const TissueImage& image, Vec3 point_mm) {
-  std::array<int, 3> index;
-  for (std::size_t a = 0; a < 3; ++a)
-    index[a] = static_cast<int>(std::lround(point_mm[a] / image.spacing_mm[a] - static_cast<double>(image.first[a])));
-  if (!image.contains(index[0], index[1], index[2])) return std::nullopt;
-  return static_cast<std::uint32_t>(image.offset(index[0], index[1], index[2]));
+  const auto [i, j, k] = image.index_at(point_mm);
+  if (!image.contains(i, j, k)) return std::nullopt;
+  return static_cast<std::uint32_t>(image.offset(i, j, k));
 }
 
 RelabelPrice voxel_price(const TetComplex& complex, const TissueImage& image, const TetContents& contents) {

@@ -48,10 +48,9 @@ bool MeshEditor::lies_on_bare_face(VertexId v) const {
   };
   std::uint64_t sum = 0;
   for (const TetId t : tets_at(v)) {
-    const auto& tet = mesh_.tets[t];
-    const auto& order = kCornersFrom[static_cast<std::size_t>(std::ranges::find(tet, v) - tet.begin())];
+    const auto others = corners_after(mesh_.tets[t], v);
     for (std::size_t n = 0; n < 3; ++n) {
-      const VertexId x = tet[order[1 + n]], y = tet[order[1 + (n + 1) % 3]];
+      const VertexId x = others[n], y = others[(n + 1) % 3];
       sum += x < y ? hash(x, y) : -hash(y, x);
     }
   }

@@ -116,4 +116,10 @@ inline constexpr ShapeBounds kCushionBounds = {1, -1, 0.05};
 inline constexpr std::array<std::array<std::size_t, 4>, 4> kCornersFrom = {
     {{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 3, 0, 1}, {3, 2, 1, 0}}};
 
+/// The other corners of a tetrahedron, in the order in which they follow its corner v in an even permutation.
+inline std::array<VertexId, 3> corners_after(const std::array<VertexId, 4>& tet, VertexId v) {
+  const auto& order = kCornersFrom[static_cast<std::size_t>(std::find(tet.begin(), tet.end(), v) - tet.begin())];
+  return {tet[order[1]], tet[order[2]], tet[order[3]]};
+}
+
 }  // namespace anatomesh
