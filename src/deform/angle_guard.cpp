@@ -109,7 +109,11 @@ void for_each_vertex_by_colour(const MeshTopology& topology, const Stage& stage,
   for (const auto& colour : topology.colours) {
     stage.check_cancelled();
     parallel_for(
-        colour.size(), [&](std::size_t i) { visit(colour[i]); }, 256);
+        colour.size(),
+        [&](std::size_t i) {
+          for (VertexId v = colour[i].begin; v < colour[i].end; ++v) visit(v);
+        },
+        1);
   }
 }
 

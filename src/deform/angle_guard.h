@@ -46,12 +46,12 @@ class AngleGuard {
   ShapeBounds bounds_;
 };
 
-/// Calls visit(v) for every vertex, for those of one colour of the vertex graph in parallel: visit may move v and read
-/// its neighbours. Throws Cancelled between two colours.
+/// Calls visit(v) for every vertex, for the runs of one colour in parallel: visit may move v and read its neighbours.
+/// Throws Cancelled between two colours.
 void for_each_vertex_by_colour(const MeshTopology& topology, const Stage& stage,
                                const std::function<void(VertexId)>& visit);
 
-/// Moves all vertices towards their goals, those of one colour of the vertex graph in parallel, up to `sweeps` times.
+/// Moves all vertices towards their goals, the runs of one colour in parallel, up to `sweeps` times.
 /// Vertices without a goal keep goal == position. The result does not depend on the number of threads.
 void advance_all(TissueMesh& mesh, const MeshTopology& topology, const AngleGuard& guard, std::span<const Vec3> goals,
                  int sweeps, const Stage& stage);

@@ -36,6 +36,11 @@ VertexLists<Item> gather_lists(std::size_t vertex_count, const Gather& gather) {
   return lists;
 }
 
+// Long enough to stay in the cache, short enough for many threads to share the runs of a colour.
+VertexId run_length(std::size_t vertices) {
+  return static_cast<VertexId>(std::clamp<std::size_t>(vertices / 512, 16, 256));
+}
+
 }  // namespace
 
 VertexLists<TetId> tets_of_vertices(std::size_t vertex_count, std::span<const std::array<VertexId, 4>> tets) {
@@ -99,27 +104,38 @@ MeshTopology make_topology(const TissueMesh& mesh) {
   topology.tissues_of_vertex = tissues_of_vertices(topology.tets_of_vertex, mesh.tissues);
   topology.interface_neighbours =
       interface_neighbours(topology.tets_of_vertex, topology.tissues_of_vertex, mesh.tets, mesh.tissues);
-  topology.colours = colour_classes(topology.neighbours);
+  topology.colours = colour_classes(topology.neighbours, run_length(mesh.points_mm.size()));
   return topology;
 }
 
-std::vector<std::vector<VertexId>> colour_classes(const VertexLists<VertexId>& neighbours) {
-  constexpr std::uint16_t kNone = 0xffff;
-  std::vector<std::uint16_t> colour(neighbours.size(), kNone);
-  std::vector<std::vector<VertexId>> classes;
-  std::vector<VertexId> taken_by;  // by colour: the vertex that last saw it at a neighbour
-  for (VertexId v = 0; v < neighbours.size(); ++v) {
-    for (const VertexId w : neighbours[v]) {
-      if (colour[w] != kNone) taken_by[colour[w]] = v;
-    }
+std::vector<std::vector<VertexRun>> colour_classes(const VertexLists<VertexId>& neighbours, VertexId length) {
+  const auto vertices = static_cast<VertexId>(neighbours.size());
+  const VertexId runs = (vertices + length - 1) / length;
+  std::vector<std::vector<VertexId>> earlier(runs);  // by run: the runs before it that it touches
+  parallel_for(
+      runs,
+      [&](std::size_t r) {
+        const auto begin = static_cast<VertexId>(r) * length;
+        for (VertexId v = begin; v < std::min(vertices, begin + length); ++v) {
+          for (const VertexId w : neighbours[v]) {
+            if (w < begin && (earlier[r].empty() || earlier[r].back() != w / length)) earlier[r].push_back(w / length);
+          }
+        }
+      },
+      1);
+  std::vector<std::size_t> colour(runs);
+  std::vector<std::vector<VertexRun>> classes;
+  std::vector<VertexId> taken_by;  // by colour: the last run that touches one of it
+  for (VertexId r = 0; r < runs; ++r) {
+    for (const VertexId other : earlier[r]) taken_by[colour[other]] = r;
     std::size_t c = 0;
-    while (c < classes.size() && taken_by[c] == v) ++c;
+    while (c < classes.size() && taken_by[c] == r) ++c;
     if (c == classes.size()) {
       classes.emplace_back();
       taken_by.push_back(static_cast<VertexId>(-1));
     }
-    colour[v] = static_cast<std::uint16_t>(c);
-    classes[c].push_back(v);
+    colour[r] = c;
+    classes[c].push_back({r * length, std::min(vertices, (r + 1) * length)});
   }
   return classes;
 }

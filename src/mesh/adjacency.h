@@ -33,9 +33,17 @@ VertexLists<VertexId> neighbours_of_vertices(const VertexLists<TetId>& tets_of_v
 /// or more lies on an interface. Cost: linear.
 VertexLists<TissueId> tissues_of_vertices(const VertexLists<TetId>& tets_of_vertex, std::span<const TissueId> tissues);
 
-/// Vertices grouped so that no two of a group are neighbours, hence all of a group can be moved at once.
-/// Greedy in order of number: the groups depend on the mesh only.
-std::vector<std::vector<VertexId>> colour_classes(const VertexLists<VertexId>& neighbours);
+/// Vertices of consecutive numbers: [begin, end).
+struct VertexRun {
+  VertexId begin = 0, end = 0;
+  bool operator==(const VertexRun&) const = default;
+};
+
+/// All vertices in runs of up to `length`, and the runs grouped so that vertices of two runs of a group are never
+/// neighbours: all runs of a group can be worked on at once, each in the order of its vertices. Where numbers follow
+/// each other in space, a run stays in the processor's cache. Greedy in order of number: the groups depend on the mesh
+/// only.
+std::vector<std::vector<VertexRun>> colour_classes(const VertexLists<VertexId>& neighbours, VertexId length);
 
 /// For each interface vertex the vertices joined to it by an edge around which all of its tissues meet: its neighbours
 /// in the interface surface or, where three or more tissues meet, along the junction line.
@@ -50,7 +58,7 @@ struct MeshTopology {
   VertexLists<VertexId> neighbours;
   VertexLists<TissueId> tissues_of_vertex;
   VertexLists<VertexId> interface_neighbours;
-  std::vector<std::vector<VertexId>> colours;
+  std::vector<std::vector<VertexRun>> colours;
 
   bool on_interface(VertexId v) const { return tissues_of_vertex[v].size() > 1; }
   /// Only background around it: the far side of the cushion.

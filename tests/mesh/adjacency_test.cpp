@@ -123,22 +123,33 @@ TEST(Adjacency, NeighboursOnAJunctionOfThreeStayOnIt) {
   EXPECT_EQ(list_of(topology.interface_neighbours, on_line(3)), std::vector{on_line(2)});
 }
 
-TEST(ColourClasses, CoverAllVerticesAndHoldNoNeighbours) {
+TEST(ColourClasses, CoverAllVerticesAndHoldNoNeighboursInTwoRuns) {
   const TissueMesh mesh = patchwork();
   const MeshTopology topology = make_topology(mesh);
-  std::vector<std::size_t> colour(mesh.points_mm.size(), topology.colours.size());
-  for (std::size_t c = 0; c < topology.colours.size(); ++c) {
-    EXPECT_FALSE(topology.colours[c].empty());
-    for (const VertexId v : topology.colours[c]) {
-      EXPECT_EQ(colour[v], topology.colours.size()) << "in two groups";
-      colour[v] = c;
+  for (const VertexId length : {1u, 7u, 64u}) {
+    const auto classes = colour_classes(topology.neighbours, length);
+    constexpr std::size_t kNone = 1000;
+    std::vector<std::size_t> colour(mesh.points_mm.size(), kNone);
+    for (std::size_t c = 0; c < classes.size(); ++c) {
+      EXPECT_FALSE(classes[c].empty());
+      for (const VertexRun& run : classes[c]) {
+        EXPECT_LE(run.end - run.begin, length);
+        for (VertexId v = run.begin; v < run.end; ++v) {
+          EXPECT_EQ(colour[v], kNone) << "in two runs";
+          colour[v] = c;
+        }
+      }
+    }
+    EXPECT_EQ(std::count(colour.begin(), colour.end(), kNone), 0);
+    for (VertexId v = 0; v < mesh.points_mm.size(); ++v) {
+      for (const VertexId w : topology.neighbours[v]) {
+        if (v / length != w / length) {
+          EXPECT_NE(colour[v], colour[w]);
+        }
+      }
     }
   }
-  EXPECT_EQ(std::count(colour.begin(), colour.end(), topology.colours.size()), 0);
-  for (VertexId v = 0; v < mesh.points_mm.size(); ++v) {
-    for (const VertexId w : topology.neighbours[v]) EXPECT_NE(colour[v], colour[w]);
-  }
-  EXPECT_LE(topology.colours.size(), 15u) << "one more than the most neighbours, at the most";
+  EXPECT_LE(colour_classes(topology.neighbours, 1).size(), 15u) << "one more than the most neighbours, at the most";
 }
 
 TEST(Adjacency, DoesNotDependOnTheNumberOfThreads) {
