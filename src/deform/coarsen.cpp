@@ -91,7 +91,8 @@ bool Coarsener::list_candidates() {
   }
   const auto all = static_cast<TissueSet>((1u << tissues_.size()) - 1);
   for (Local w = 1; w < star_.vertices().size(); ++w) {
-    if (at_edge_[w] == all) candidates_.push_back({w, 0});
+    if (at_edge_[w] != all || (tissues_.size() > 1 && mesh_.is_outer(star_.vertices()[w]))) continue;
+    candidates_.push_back({w, 0});
   }
   return !candidates_.empty();
 }
@@ -273,7 +274,8 @@ std::size_t coarsen(MeshEditor& mesh, const SurfaceField& field, const CoarsenLi
   constexpr VertexId kPerCheck = 1 << 14;
   constexpr std::size_t kFew = 2000;  // a round that finds one in so many is the last
   Coarsener coarsener(mesh, field, limits);
-  std::vector<char> is_due(mesh.vertex_count(), 1), is_touched(mesh.vertex_count());
+  std::vector<char> is_due(mesh.vertex_count()), is_touched(mesh.vertex_count());
+  for (VertexId v = 0; v < mesh.vertex_count(); ++v) is_due[v] = mesh.changed_at(v) >= limits.since;
   std::size_t gone = 0;
   for (int round = 0; round < rounds; ++round) {
     const std::size_t before = gone;

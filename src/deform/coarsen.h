@@ -1,6 +1,7 @@
 // Fewer elements: edge collapses that keep what the mesh says of the image.
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -20,6 +21,7 @@ struct CoarsenLimits {
   const SizeField* sizes = nullptr;  ///< no edge longer than this is made; null: no limit
   std::vector<double> size_at;       ///< by vertex: the same around it, the mean of both ends; empty: no limit
   std::size_t target_tets = 0;       ///< stop when there are no more, without the cushion
+  std::uint32_t since = 0;           ///< only vertices with changes since then, by the clock, and what changes now
 };
 
 /// Collapses each vertex, in the order of their numbers, onto the neighbour that keeps the worst of the new tetrahedra

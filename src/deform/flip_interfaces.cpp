@@ -148,8 +148,8 @@ bool Flipper::visit(VertexId a, VertexId b) {
 
 }  // namespace
 
-std::size_t flip_interfaces(MeshEditor& mesh, const SurfaceField& field, const ShapeBounds& bounds,
-                            const Stage& stage) {
+std::size_t flip_interfaces(MeshEditor& mesh, const SurfaceField& field, const ShapeBounds& bounds, const Stage& stage,
+                            std::uint32_t since) {
   constexpr VertexId kPerCheck = 1 << 14;
   Flipper flipper(mesh, field, bounds);
   std::vector<VertexId> neighbours;
@@ -165,7 +165,9 @@ std::size_t flip_interfaces(MeshEditor& mesh, const SurfaceField& field, const S
     }
     std::ranges::sort(neighbours);
     neighbours.erase(std::ranges::unique(neighbours).begin(), neighbours.end());
-    for (const VertexId w : neighbours) flips += flipper.visit(v, w);
+    for (const VertexId w : neighbours) {
+      if (std::max(mesh.changed_at(v), mesh.changed_at(w)) >= since) flips += flipper.visit(v, w);
+    }
   }
   return flips;
 }

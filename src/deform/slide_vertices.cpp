@@ -114,13 +114,13 @@ bool Slider::visit(VertexId v, double enough) {
 }  // namespace
 
 std::size_t slide_vertices(MeshEditor& mesh, const SurfaceField& field, const ShapeBounds& bounds, double enough,
-                           const Stage& stage) {
+                           const Stage& stage, std::uint32_t since) {
   constexpr VertexId kPerCheck = 1 << 14;
   Slider slider(mesh, field, bounds);
   std::size_t moves = 0;
   for (VertexId v = 0; v < mesh.vertex_count(); ++v) {
     if (v % kPerCheck == 0) stage.check_cancelled();
-    if (mesh.tissues_at(v) < 2 || mesh.is_outer(v)) continue;
+    if (mesh.tissues_at(v) < 2 || mesh.is_outer(v) || mesh.changed_at(v) < since) continue;
     moves += slider.visit(v, enough);
   }
   return moves;

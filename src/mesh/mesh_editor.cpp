@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 #include "base/parallel.h"
 #include "mesh/adjacency.h"
@@ -9,7 +10,7 @@
 
 namespace anatomesh {
 
-MeshEditor::MeshEditor(const TissueMesh& mesh) : mesh_(mesh) {
+MeshEditor::MeshEditor(TissueMesh mesh) : mesh_(std::move(mesh)) {
   VertexLists<TetId> lists = tets_of_vertices(mesh_.points_mm.size(), mesh_.tets);
   stars_.resize(lists.size());
   for (std::size_t v = 0; v < stars_.size(); ++v) {
@@ -67,6 +68,19 @@ TissueMesh MeshEditor::result() const {
   }
   return with_cushion_last(living);
 }
+
+TissueMesh MeshEditor::living(std::span<const VertexId> numbers) const {
+  TissueMesh living;
+  for (TetId t = 0; t < mesh_.tets.size(); ++t) {
+    if (!is_alive(t)) continue;
+    const auto& [a, b, c, d] = mesh_.tets[t];
+    living.tets.push_back({numbers[a], numbers[b], numbers[c], numbers[d]});
+    living.tissues.push_back(mesh_.tissues[t]);
+  }
+  return living;
+}
+
+void MeshEditor::mark(VertexId v) { clock_ = changed_at_[v] = 1; }
 
 void MeshEditor::attach(VertexId v, TetId t) {
   Star& star = stars_[v];

@@ -16,10 +16,12 @@ namespace anatomesh {
 /// only. Memory: about 60 bytes a tetrahedron.
 class MeshEditor {
  public:
-  explicit MeshEditor(const TissueMesh& mesh);
+  explicit MeshEditor(TissueMesh mesh);
 
   /// The mesh as it is now, without what has died, the cushion last.
   TissueMesh result() const;
+  /// The living tetrahedra, with the numbers that their vertices have elsewhere: numbers[v]; no points.
+  TissueMesh living(std::span<const VertexId> numbers) const;
 
   std::size_t vertex_count() const { return mesh_.points_mm.size(); }  ///< dead ones included
   std::size_t tet_count() const { return mesh_.tets.size(); }          ///< dead ones included
@@ -43,6 +45,9 @@ class MeshEditor {
   std::uint32_t clock() const { return clock_; }
   /// The clock at the last change of a tetrahedron at v; 0: none yet.
   std::uint32_t changed_at(VertexId v) const { return changed_at_[v]; }
+
+  /// Before any change: has the clock show 1, and v changed then.
+  void mark(VertexId v);
 
   void move(VertexId v, Vec3 p);
 
