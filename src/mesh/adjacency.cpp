@@ -1,13 +1,36 @@
 #include "mesh/adjacency.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <utility>
 
 #include "base/parallel.h"
 
 namespace anatomesh {
 namespace {
 
-// Builds lists of any length: gather(v, list) fills the list of one vertex.
+// Marks for numbers below some bound, all of which are taken back at once.
+class Marks {
+ public:
+  void start(std::size_t bound) {
+    if (mark_.size() < bound || ++current_ == 0) {
+      mark_.assign(bound, 0);
+      current_ = 1;
+    }
+  }
+  /// Whether it has not been marked since the start.
+  bool add(std::size_t n) {
+    if (mark_[n] == current_) return false;
+    mark_[n] = current_;
+    return true;
+  }
+
+ private:
+  std::vector<std::uint32_t> mark_;
+  std::uint32_t current_ = 0;
+};
+
+// Builds lists of any length: gather(v, list) appends the list of one vertex, each item once, which is sorted then.
 template <class Item, class Gather>
 VertexLists<Item> gather_lists(std::size_t vertex_count, const Gather& gather) {
   constexpr std::size_t kGrain = 4096;
@@ -15,14 +38,12 @@ VertexLists<Item> gather_lists(std::size_t vertex_count, const Gather& gather) {
   VertexLists<Item> lists;
   lists.begin.assign(vertex_count + 1, 0);
   parallel_blocks(vertex_count, kGrain, [&](std::size_t begin, std::size_t end) {
-    std::vector<Item> list;
+    std::vector<Item>& list = blocks[begin / kGrain];
     for (std::size_t v = begin; v < end; ++v) {
-      list.clear();
+      const std::size_t first = list.size();
       gather(v, list);
-      std::sort(list.begin(), list.end());
-      list.erase(std::unique(list.begin(), list.end()), list.end());
-      lists.begin[v + 1] = static_cast<std::uint32_t>(list.size());
-      blocks[begin / kGrain].insert(blocks[begin / kGrain].end(), list.begin(), list.end());
+      std::sort(list.begin() + static_cast<std::ptrdiff_t>(first), list.end());
+      lists.begin[v + 1] = static_cast<std::uint32_t>(list.size() - first);
     }
   });
   for (std::size_t v = 0; v < vertex_count; ++v) lists.begin[v + 1] += lists.begin[v];
@@ -61,9 +82,12 @@ VertexLists<TetId> tets_of_vertices(std::size_t vertex_count, std::span<const st
 VertexLists<VertexId> neighbours_of_vertices(const VertexLists<TetId>& tets_of_vertex,
                                              std::span<const std::array<VertexId, 4>> tets) {
   return gather_lists<VertexId>(tets_of_vertex.size(), [&](std::size_t v, std::vector<VertexId>& list) {
+    static thread_local Marks seen;
+    seen.start(tets_of_vertex.size());
+    seen.add(v);
     for (const TetId t : tets_of_vertex[v]) {
       for (const VertexId w : tets[t]) {
-        if (w != v) list.push_back(w);
+        if (seen.add(w)) list.push_back(w);
       }
     }
   });
@@ -71,7 +95,10 @@ VertexLists<VertexId> neighbours_of_vertices(const VertexLists<TetId>& tets_of_v
 
 VertexLists<TissueId> tissues_of_vertices(const VertexLists<TetId>& tets_of_vertex, std::span<const TissueId> tissues) {
   return gather_lists<TissueId>(tets_of_vertex.size(), [&](std::size_t v, std::vector<TissueId>& list) {
-    for (const TetId t : tets_of_vertex[v]) list.push_back(tissues[t]);
+    const auto first = static_cast<std::ptrdiff_t>(list.size());
+    for (const TetId t : tets_of_vertex[v]) {
+      if (std::find(list.begin() + first, list.end(), tissues[t]) == list.end()) list.push_back(tissues[t]);
+    }
   });
 }
 
@@ -80,20 +107,26 @@ VertexLists<VertexId> interface_neighbours(const VertexLists<TetId>& tets_of_ver
                                            std::span<const std::array<VertexId, 4>> tets,
                                            std::span<const TissueId> tissues) {
   return gather_lists<VertexId>(tets_of_vertex.size(), [&](std::size_t v, std::vector<VertexId>& list) {
-    const std::size_t wanted = tissues_of_vertex[v].size();
-    if (wanted < 2) return;
-    std::vector<std::pair<VertexId, TissueId>> seen;
-    for (const TetId t : tets_of_vertex[v]) {
-      for (const VertexId w : tets[t]) {
-        if (w != v) seen.emplace_back(w, tissues[t]);
+    const std::span<const TissueId> here = tissues_of_vertex[v];
+    if (here.size() < 2) return;
+    static thread_local std::vector<std::uint8_t> tissues_at;  // the edge to each vertex: how many
+    tissues_at.resize(tets_of_vertex.size());
+    const auto first = static_cast<std::ptrdiff_t>(list.size());
+    for (const TissueId tissue : here) {
+      static thread_local Marks seen;
+      seen.start(tets_of_vertex.size());
+      seen.add(v);
+      for (const TetId t : tets_of_vertex[v]) {
+        if (tissues[t] != tissue) continue;
+        for (const VertexId w : tets[t]) {
+          if (!seen.add(w)) continue;
+          if (tissues_at[w] == 0) list.push_back(w);
+          if (tissues_at[w] < 0xff) ++tissues_at[w];
+        }
       }
     }
-    std::sort(seen.begin(), seen.end());
-    seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
-    for (std::size_t first = 0, last = 0; first < seen.size(); first = last) {
-      while (last < seen.size() && seen[last].first == seen[first].first) ++last;
-      if (last - first == wanted) list.push_back(seen[first].first);
-    }
+    const auto has_fewer = [&](VertexId w) { return std::exchange(tissues_at[w], std::uint8_t{0}) < here.size(); };
+    list.erase(std::remove_if(list.begin() + first, list.end(), has_fewer), list.end());
   });
 }
 
