@@ -28,12 +28,9 @@ bool on_image_border(const TissueImage& image, Vec3 p) {
 
 double distance_from_boundary(const SurfaceField& field, Vec3 p, TissueId a, TissueId b) {
   if ((a == 0 || b == 0) && on_image_border(field.image(), p)) return 0;
-  const std::array<TissueId, 2> tissues = {a, b};
-  std::array<double, 2> share;
-  std::array<Vec3, 2> gradient;
-  field.evaluate(p, tissues, share, gradient);
+  const auto [difference, gradient] = field.difference(p, a, b);
   constexpr double kFlat = 1e-3;  // per mm; far from both
-  return std::abs(share[0] - share[1]) / std::max(kFlat, norm(gradient[0] - gradient[1]));
+  return std::abs(difference) / std::max(kFlat, norm(gradient));
 }
 
 InterfaceLevel::InterfaceLevel(const SurfaceField& field, Vec3 p, std::span<const TissueId> tissues)

@@ -25,9 +25,22 @@ class SurfaceField {
   /// a tissue (the voxels in cache).
   void evaluate(Vec3 p, std::span<const TissueId> tissues, std::span<double> values, std::span<Vec3> gradients) const;
 
+  struct Value {
+    double value;
+    Vec3 gradient;  ///< per mm
+  };
+  /// u_b - u_a at p: 0 on the boundary of a and b. As evaluate() for one tissue.
+  Value difference(Vec3 p, TissueId a, TissueId b) const;
+
   const TissueImage& image() const { return *image_; }
 
  private:
+  struct Near;
+  using Sums = std::array<double, 4>;  // value, then gradient, per voxel
+  Near voxels_near(Vec3 p) const;
+  static Sums sum_up(const Near& near, const std::array<std::int16_t, 64>& share);
+  Value scaled(const Sums& sums) const;
+
   const TissueImage* image_;
   Vec3 voxels_per_mm_;
   Vec3 first_;

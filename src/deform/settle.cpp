@@ -108,11 +108,12 @@ class Settling {
   }
 
   // None far from the boundary, and where the tissues lie the other way round: the far side of a thin sheet.
-  std::optional<Plane> plane_at(Vec3 p, double share_difference, Vec3 gradient, Vec3 area) const {
+  std::optional<Plane> plane_at(Vec3 p, TissueId low, TissueId high, Vec3 area) const {
+    const auto [difference, gradient] = field_.difference(p, low, high);
     const double steep = norm(gradient);
     if (steep * voxel_mm_ < 1e-3 || dot(gradient, area) <= 0) return {};
     const Vec3 normal = (1 / steep) * gradient;
-    const double off = std::clamp(-share_difference / steep, -0.5 * voxel_mm_, 0.5 * voxel_mm_);
+    const double off = std::clamp(-difference / steep, -0.5 * voxel_mm_, 0.5 * voxel_mm_);
     return Plane{normal, dot(normal, p) + off, norm(area)};
   }
 
@@ -123,12 +124,7 @@ class Settling {
       normal[face.border->axis] = 1;
       return {normal, face.border->position_mm, norm(area)};
     }
-    const std::array<TissueId, 2> pair = {face.low, face.high};
-    std::array<double, 2> share;
-    std::array<Vec3, 2> gradient;
-    const Vec3 centre = centroid(mesh_, face);
-    field_.evaluate(centre, pair, share, gradient);
-    Plane plane = plane_at(centre, share[1] - share[0], gradient[1] - gradient[0], area).value_or(Plane{});
+    Plane plane = plane_at(centroid(mesh_, face), face.low, face.high, area).value_or(Plane{});
     plane.level += shifts_.between(face.low, face.high);
     return plane;
   }
@@ -168,12 +164,8 @@ class Settling {
   void add_vertex(VertexId v, Quadric& quadric) const {
     const std::vector<PairAtVertex> pairs = pairs_at(v);
     for (const PairAtVertex& pair : pairs) {
-      const std::array<TissueId, 2> tissues = {pair.low, pair.high};
-      std::array<double, 2> share;
-      std::array<Vec3, 2> gradient;
       const Vec3 p = mesh_.points_mm[v];
-      field_.evaluate(p, tissues, share, gradient);
-      const auto plane = plane_at(p, share[1] - share[0], gradient[1] - gradient[0], pair.area);
+      const auto plane = plane_at(p, pair.low, pair.high, pair.area);
       if (!plane) continue;
       quadric.add(plane->normal, plane->level - dot(plane->normal, p), kOfVertex / static_cast<double>(pairs.size()));
     }

@@ -4,13 +4,7 @@
 #include <cmath>
 
 #include "base/vec.h"
-
-// One version of a function for each kind of vector instructions; the loader takes the best that the processor has.
-#if defined(__x86_64__) && defined(__linux__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define ANATOMESH_VECTOR_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#define ANATOMESH_VECTOR_CLONES
-#endif
+#include "base/vector_clones.h"
 
 namespace anatomesh {
 namespace {
