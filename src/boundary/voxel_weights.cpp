@@ -5,15 +5,18 @@
 #include <cstddef>
 
 #include "base/parallel.h"
+#include "base/vector_clones.h"
 
 namespace anatomesh {
 namespace {
 
 constexpr int kReach = 2;  // of the smoothing kernel, voxels
 constexpr std::size_t kWidth = 2 * kReach + 1;
-// Share of the kernel [1 2 1]/4 and of [1 4 6 4 1]/16 (along each axis); what is missing to 1 is the voxel itself.
-// Their variances are 1/2 and 1, so these shares give -1/3, and that of the B-spline is 1/3.
-constexpr double kNear = 8.0 / 3, kFar = -5.0 / 3;
+constexpr std::size_t kVoxels = kWidth * kWidth * kWidth;
+// The kernel is 8/3 of [1 2 1]/4 less 5/3 of [1 4 6 4 1]/16 (along each axis). Their variances are 1/2 and 1, so these
+// shares give -1/3, and that of the B-spline is 1/3. In units of 1/kKernelUnit all its values are integers, whose sums
+// stay within 16 bits.
+constexpr int kNear = 8 * 64, kFar = -5, kKernelUnit = 3 * 16 * 16 * 16;
 constexpr double kLeast = 0.1, kMost = 1.5;
 
 // The margin at its own centre that a thin structure gets: that of a sheet one voxel thick.
@@ -54,20 +57,38 @@ class Tally {
 
  private:
   std::size_t count_ = 0;
-  std::array<TissueId, kWidth * kWidth * kWidth> tissues_;
-  std::array<double, kWidth * kWidth * kWidth> sums_;
+  std::array<TissueId, kVoxels> tissues_;
+  std::array<double, kVoxels> sums_;
 };
 
-std::array<double, kWidth * kWidth * kWidth> smoothing_kernel() {
-  constexpr std::array<double, kWidth> kNearRow = {0, 1 / 4., 2 / 4., 1 / 4., 0};
-  constexpr std::array<double, kWidth> kFarRow = {1 / 16., 4 / 16., 6 / 16., 4 / 16., 1 / 16.};
-  std::array<double, kWidth * kWidth * kWidth> kernel;
-  for (std::size_t n = 0; n < kernel.size(); ++n) {
+constexpr std::array<std::int16_t, kVoxels> smoothing_kernel() {
+  constexpr std::array<int, kWidth> kNearRow = {0, 1, 2, 1, 0}, kFarRow = {1, 4, 6, 4, 1};
+  std::array<std::int16_t, kVoxels> kernel{};
+  for (std::size_t n = 0; n < kVoxels; ++n) {
     const std::size_t i = n % kWidth, j = n / kWidth % kWidth, k = n / kWidth / kWidth;
-    kernel[n] = kNear * kNearRow[i] * kNearRow[j] * kNearRow[k] + kFar * kFarRow[i] * kFarRow[j] * kFarRow[k];
+    kernel[n] = static_cast<std::int16_t>(kNear * kNearRow[i] * kNearRow[j] * kNearRow[k] +
+                                          kFar * kFarRow[i] * kFarRow[j] * kFarRow[k]);
   }
-  kernel[kernel.size() / 2] += 1 - kNear - kFar;
   return kernel;
+}
+
+constexpr std::array<std::int16_t, kVoxels> kKernel = smoothing_kernel();
+
+// Sum of the kernel over the voxels of one tissue, and whether all voxels are of that one or the other.
+struct OwnShare {
+  std::int16_t sum;
+  bool only_two;
+};
+
+ANATOMESH_VECTOR_CLONES OwnShare share_of(const TissueId* __restrict tissues, TissueId own, TissueId other) {
+  std::uint16_t sum = 0, known = 0xffff;
+  for (std::size_t n = 0; n < kVoxels; ++n) {
+    const auto is_own = static_cast<std::uint16_t>(tissues[n] == own ? 0xffff : 0);
+    const auto is_other = static_cast<std::uint16_t>(tissues[n] == other ? 0xffff : 0);
+    sum = static_cast<std::uint16_t>(sum + (is_own & static_cast<std::uint16_t>(kKernel[n])));
+    known = static_cast<std::uint16_t>(known & (is_own | is_other));
+  }
+  return {static_cast<std::int16_t>(sum), known != 0};
 }
 
 class Weighing {
@@ -129,15 +150,25 @@ class Weighing {
   }
 
   std::uint8_t smoothed(int i, int j, int k) const {
-    static const auto kernel = smoothing_kernel();
-    Tally tally;
-    const double* weight = kernel.data();
+    std::array<TissueId, kVoxels> tissues;
+    TissueId* to = tissues.data();
+    const int* const columns = &read_at_[0][static_cast<std::size_t>(i)];  // from i - kReach on
     for (int c = k - kReach; c <= k + kReach; ++c) {
       for (int b = j - kReach; b <= j + kReach; ++b) {
-        for (int a = i - kReach; a <= i + kReach; ++a) tally.add(image_.voxels[read_offset(a, b, c)], *weight++);
+        const TissueId* const row = &image_.voxels[read_offset(0, b, c)] - read_at_[0][kReach];
+        for (std::size_t a = 0; a < kWidth; ++a) *to++ = row[columns[a]];
       }
     }
-    return stored(std::clamp(tally.margin(image_.at(i, j, k)), kLeast, kMost));
+    return stored(std::clamp(smoothed_margin(tissues, image_.at(i, j, k)), kLeast, kMost));
+  }
+
+  static double smoothed_margin(const std::array<TissueId, kVoxels>& tissues, TissueId own) {
+    const auto other = std::ranges::find_if(tissues, [own](TissueId t) { return t != own; });
+    const auto [sum, only_two] = share_of(tissues.data(), own, other == tissues.end() ? own : *other);
+    if (only_two) return static_cast<double>(sum - std::max(0, kKernelUnit - sum)) / kKernelUnit;
+    Tally tally;
+    for (std::size_t n = 0; n < kVoxels; ++n) tally.add(tissues[n], kKernel[n]);
+    return tally.margin(own) / kKernelUnit;
   }
 
   static std::uint8_t stored(double weight) { return static_cast<std::uint8_t>(weight * kWeightUnit + 0.5); }
