@@ -67,13 +67,13 @@ void register_mesh(TissueMesh& mesh, const MeshTopology& topology, const AngleGu
   std::vector<SourcePoint> sources;
   for (const VertexId v : vertices)
     sources.push_back({{}, topology.tissues_of_vertex[v], mean_edge(mesh, topology, v)});
-  BlockMatrix stiffness{make_pattern(part.vertices, part.tets), {}};
+  BlockMatrix stiffness{make_pattern(part.vertices, topology.neighbours), {}};
   std::vector<double> weight(part.vertices);
   std::vector<Vec3> wanted(part.vertices), u(part.vertices), goals(mesh.points_mm.size()), before;
   const Vec3 spacing = field.image().spacing_mm;
   const double near_mm = kNear * (spacing.x + spacing.y + spacing.z) / 3;
   for (int iteration = 0; iteration < iterations; ++iteration) {
-    assemble_stiffness(stiffness, std::span(mesh.points_mm).first(part.vertices), part.tets, part.tissues, materials);
+    assemble_stiffness(stiffness, std::span(mesh.points_mm).first(part.vertices), {part.tets, part.tissues, topology.tets_of_vertex}, materials);
     for (std::size_t s = 0; s < vertices.size(); ++s) sources[s].position_mm = mesh.points_mm[vertices[s]];
     std::fill(weight.begin(), weight.end(), 0.0);
     const double scale = kMatchWeight * mean_diagonal(stiffness);

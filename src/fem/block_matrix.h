@@ -9,30 +9,22 @@
 
 #include "anatomesh/options.h"
 #include "anatomesh/types.h"
+#include "mesh/adjacency.h"
 
 namespace anatomesh {
 
-/// Where the blocks are, and what is added to them. Depends on the connectivity only. Row v has a block for v and
-/// for each vertex that shares an edge with it: about 15 in a tetrahedral mesh.
+/// Where the blocks are. Depends on the connectivity only. Row v has a block for v and for each vertex that shares an
+/// edge with it: about 15 in a tetrahedral mesh.
 struct BlockPattern {
-  /// A corner of a tetrahedron, and the four blocks in its vertex's row that the tetrahedron adds to.
-  struct Incidence {
-    TetId tet;
-    std::uint32_t corner;                 ///< 0 to 3
-    std::array<std::uint32_t, 4> blocks;  ///< of the tetrahedron's four vertices
-  };
-
-  std::vector<std::uint32_t> row_begin;       ///< one a vertex and one more: blocks row_begin[v] .. row_begin[v+1]
-  std::vector<VertexId> columns;              ///< one a block, ascending in each row
-  std::vector<std::uint32_t> diagonal;        ///< one a vertex: its block (v, v)
-  std::vector<std::uint32_t> incident_begin;  ///< one a vertex and one more
-  std::vector<Incidence> incidences;          ///< by vertex, then tetrahedron
+  std::vector<std::uint32_t> row_begin;  ///< one a vertex and one more: blocks row_begin[v] .. row_begin[v+1]
+  std::vector<VertexId> columns;         ///< one a block, ascending in each row
+  std::vector<std::uint32_t> diagonal;   ///< one a vertex: its block (v, v)
 
   std::size_t rows() const { return diagonal.size(); }
 };
 
-/// Cost: about 0.3 us a tetrahedron, and 110 bytes of memory for it.
-BlockPattern make_pattern(std::size_t vertex_count, std::span<const std::array<VertexId, 4>> tets);
+/// Pattern of the first `vertex_count` vertices of a mesh, from all its neighbours.
+BlockPattern make_pattern(std::size_t vertex_count, const VertexLists<VertexId>& neighbours);
 
 /// All blocks, both triangles, row by row. (Storage in float was measured: no faster on two cores.)
 struct BlockMatrix {
@@ -42,11 +34,17 @@ struct BlockMatrix {
   std::size_t rows() const { return pattern.rows(); }
 };
 
-/// Fills the matrix with the stiffness (Pa mm) of the mesh that its pattern was made for, whose points may have moved
-/// since. Tetrahedron n is of materials[tissues[n]]; none may be flat. The result is symmetric to the last bit and
-/// the same for any number of threads. Cost: about 0.2 us a tetrahedron on two cores.
-void assemble_stiffness(BlockMatrix& matrix, std::span<const Vec3> points_mm,
-                        std::span<const std::array<VertexId, 4>> tets, std::span<const std::uint16_t> tissues,
+/// The tetrahedra that a stiffness is the sum of: the first ones of a mesh.
+struct ElasticTets {
+  std::span<const std::array<VertexId, 4>> tets;
+  std::span<const std::uint16_t> tissues;    ///< one a tetrahedron
+  const VertexLists<TetId>& tets_of_vertex;  ///< of the whole mesh: those from tets.size() on do not count
+};
+
+/// Fills the matrix with the stiffness (Pa mm) of a mesh with its pattern. Tetrahedron n is of materials[tissues[n]];
+/// none may be flat. The result is symmetric to the last bit and the same for any number of threads. Cost: about 0.2 us
+/// a tetrahedron on two cores.
+void assemble_stiffness(BlockMatrix& matrix, std::span<const Vec3> points_mm, const ElasticTets& elastic,
                         std::span<const Material> materials);
 
 /// y = matrix * x. Cost: about 3 ns a block on two cores.

@@ -269,6 +269,11 @@ bool Rounds::must_retry(const std::vector<Fidelity>& approached, const std::vect
 
 DeformedMesh Rounds::run() {
   build();
+  if (options_.fidelity_stage == FidelityStage::lattice) {
+    deformer_.approach(lattice_.mesh, part(0, 0.5));
+    stage_done_("deform");
+    return finish(std::move(lattice_.mesh), 0);
+  }
   for (;;) {
     TissueMesh mesh = std::move(lattice_.mesh);
     Reached reached = approach(mesh);

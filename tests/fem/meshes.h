@@ -38,8 +38,9 @@ struct ElasticMesh {
   std::vector<std::uint8_t> on_boundary;  ///< one a vertex
 
   BlockMatrix stiffness() const {
-    BlockMatrix matrix{make_pattern(points_mm.size(), tets), {}};
-    assemble_stiffness(matrix, points_mm, tets, tissues, materials);
+    const VertexLists<TetId> tets_of_vertex = tets_of_vertices(points_mm.size(), tets);
+    BlockMatrix matrix{make_pattern(points_mm.size(), neighbours_of_vertices(tets_of_vertex, tets)), {}};
+    assemble_stiffness(matrix, points_mm, {tets, tissues, tets_of_vertex}, materials);
     return matrix;
   }
 };
