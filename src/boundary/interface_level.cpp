@@ -15,6 +15,14 @@ Vec3 solve_symmetric(const Mat3& a, Vec3 b) {
   return (1 / det) * Vec3{dot(b, cross(c1, c2)), dot(c0, cross(b, c2)), dot(c0, cross(c1, b))};
 }
 
+double trace_of(const Mat3& m) { return m[0][0] + m[1][1] + m[2][2]; }
+
+Mat3 damped(Mat3 normal) {
+  const double trace = trace_of(normal);
+  for (std::size_t r = 0; r < 3; ++r) normal[r][r] += 0.01 * trace;
+  return normal;
+}
+
 }  // namespace
 
 bool on_image_border(const TissueImage& image, Vec3 p) {
@@ -57,27 +65,45 @@ InterfaceLevel::Shares InterfaceLevel::deviations(Vec3 q, std::array<Vec3, kMaxT
   return shares;
 }
 
-// Damped Gauss-Newton step on the deviations.
-Vec3 InterfaceLevel::step_from(Vec3 q) const {
-  std::array<Vec3, kMaxTissues> gradients;
-  const Shares at = deviations(q, gradients);
+std::optional<Mat3> InterfaceLevel::normal_matrix(const std::array<Vec3, kMaxTissues>& gradients) const {
   Mat3 normal = {};
-  Vec3 rhs;
   for (std::size_t n = 0; n < count_; ++n) {
-    rhs -= (at[n] - wanted_[n]) * gradients[n];
     for (std::size_t r = 0; r < 3; ++r) {
       for (std::size_t c = 0; c < 3; ++c) normal[r][c] += gradients[n][r] * gradients[n][c];
     }
   }
-  const double trace = normal[0][0] + normal[1][1] + normal[2][2];
   const Vec3 spacing = field_.image().spacing_mm;
   const double voxel = std::max({spacing.x, spacing.y, spacing.z});
-  if (trace * voxel * voxel < 1e-6) return {};  // far from the boundary: no direction to go
-  for (std::size_t r = 0; r < 3; ++r) normal[r][r] += 0.01 * trace;
-  const Vec3 step = solve_symmetric(normal, rhs);
+  if (trace_of(normal) * voxel * voxel < 1e-6) return std::nullopt;
+  return normal;
+}
+
+// Damped Gauss-Newton step on the deviations.
+Vec3 InterfaceLevel::step_from(Vec3 q) const {
+  std::array<Vec3, kMaxTissues> gradients;
+  const Shares at = deviations(q, gradients);
+  const std::optional<Mat3> normal = normal_matrix(gradients);
+  if (!normal) return {};
+  Vec3 rhs;
+  for (std::size_t n = 0; n < count_; ++n) rhs -= (at[n] - wanted_[n]) * gradients[n];
+  const Vec3 spacing = field_.image().spacing_mm;
+  const Vec3 step = solve_symmetric(damped(*normal), rhs);
   const double voxels =
       std::max({std::abs(step.x) / spacing.x, std::abs(step.y) / spacing.y, std::abs(step.z) / spacing.z});
   return voxels > 0.5 ? (0.5 / voxels) * step : step;
+}
+
+Mat3 InterfaceLevel::along_at(Vec3 q) const {
+  std::array<Vec3, kMaxTissues> gradients;
+  deviations(q, gradients);
+  Mat3 along = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  const std::optional<Mat3> normal = normal_matrix(gradients);
+  if (!normal) return along;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Vec3 across = solve_symmetric(damped(*normal), {(*normal)[0][c], (*normal)[1][c], (*normal)[2][c]});
+    for (std::size_t r = 0; r < 3; ++r) along[r][c] -= across[r];
+  }
+  return along;
 }
 
 }  // namespace anatomesh

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 
 #include "boundary/surface_field.h"
@@ -29,12 +30,17 @@ class InterfaceLevel {
   /// Displacement (mm) that brings q back to the level, to first order; half a voxel at the most.
   Vec3 step_from(Vec3 q) const;
 
+  /// Takes from a displacement at q what leads away from the level, to first order.
+  Mat3 along_at(Vec3 q) const;
+
  private:
   static constexpr std::size_t kMaxTissues = 8;
   using Shares = std::array<double, kMaxTissues>;
 
   // Each share less their mean, and the gradients of that.
   Shares deviations(Vec3 q, std::array<Vec3, kMaxTissues>& gradients) const;
+  // Sum of the gradients' outer products; none far from the boundary, where there is no direction to go.
+  std::optional<Mat3> normal_matrix(const std::array<Vec3, kMaxTissues>& gradients) const;
 
   const SurfaceField& field_;
   std::array<TissueId, kMaxTissues> tissues_;

@@ -97,8 +97,11 @@ bool Slider::visit(VertexId v, double enough) {
   double best = before, step = 0.3 * shortest_edge();
   for (int n = 0; n < 4; ++n, step *= 0.5) {
     const Vec3 around = at;
+    const Mat3 along = level.along_at(around);
     for (const Vec3 direction : kSearchDirections) {
-      Vec3 p = around + step * direction;
+      // Most places are no better even before they are brought to the level exactly.
+      Vec3 p = around + step * (along * direction);
+      if (worst_at(p, best + kGain) <= best + kGain) continue;
       for (int k = 0; k < 2; ++k) p += level.step_from(p);
       const double there = worst_at(p, best + kGain);
       if (there <= best + kGain || norm(level.step_from(p)) > near_mm_ || !keeps_faces(p)) continue;
