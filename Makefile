@@ -47,7 +47,7 @@ test: packages
 	@echo "next: make demo, or read CONTRIBUTING.md before a change"
 
 bench:
-	@tools/install_packages.sh libcgal-dev
+	@tools/install_packages.sh libcgal-dev python3-matplotlib
 	cmake --preset release -DANATOMESH_BUILD_PEERS=ON
 	cmake --build --preset release -j $(JOBS) --target anatomesh bench_stages cgal_mesh_3
 	benchmarks/file_to_file.py $(BENCH_IMAGES) --cgal --page docs/speed.md

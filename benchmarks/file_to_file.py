@@ -7,7 +7,7 @@ and with two threads without its optimisers.
 usage: file_to_file.py IMAGE [IMAGE ...] [--program PATH] [--runs N] [--options "..."] [--cgal] [--page docs/speed.md]
 
 Prints a row a mesher: tetrahedra, the median of the seconds of N runs with their range, tetrahedra a second, peak memory,
-and how many times as fast Anatomesh is. Nothing else should run on the machine; compare figures of one run only.
+and how many times as fast Anatomesh is; with --page also a plot, and the figures as JSON beside the page. Nothing else should run on the machine; compare figures of one run only.
 """
 import argparse
 import json
@@ -20,6 +20,7 @@ import types
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT / "tools"), str(ROOT / "benchmarks")]
 import compare_peers  # noqa: E402
+import speed_plots  # noqa: E402
 from measured_run import run  # noqa: E402
 from pages import replace_between  # noqa: E402
 
@@ -108,11 +109,18 @@ def main():
     lines = ["| image | mesher | tetrahedra | seconds, median (range) | tetrahedra a second | peak memory MB | Anatomesh is"
              " faster by |", "|---|---|---|---|---|---|---|"]
     print("\n".join(lines))
+    figures = {}
     for image in arguments.images:
-        lines += rows(image, time_image(arguments, image))
+        measured = time_image(arguments, image)
+        figures[pathlib.Path(image).name.split(".")[0]] = {
+            mesher: {"tets": tets, "seconds": seconds, "memory_mb": memory}
+            for mesher, (tets, seconds, memory) in measured.items()}
+        lines += rows(image, measured)
         print("\n".join(lines[-len(CGAL) - 1 if arguments.cgal else -1:]), flush=True)
     if arguments.page:
+        (arguments.page.parent / "speed_files.json").write_text(json.dumps(figures, indent=1) + "\n", encoding="utf-8")
         replace_between(arguments.page, "<!-- files:begin -->", "<!-- files:end -->", "\n".join(lines))
+        speed_plots.draw_files(arguments.page.parent)
 
 
 if __name__ == "__main__":

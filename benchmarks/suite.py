@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Runs the benchmarks of bench_stages, each case in a process of its own for the sake of its peak memory, and writes the
-tables of docs/speed.md.
+table and the plots of docs/speed.md.
 
 usage: suite.py [--program build/release/bin/bench_stages] [--filter REGEX] [--runs N] [--page docs/speed.md]
 
@@ -18,9 +18,10 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT / "tools"))
+sys.path[:0] = [str(ROOT / "tools"), str(ROOT / "benchmarks")]
 from measured_run import run  # noqa: E402
 from pages import replace_between  # noqa: E402
+import speed_plots  # noqa: E402
 
 KEPT = ROOT / "docs" / "speed.json"
 CASE = re.compile(r"(?P<stage>\w+)/side:(?P<side>\d+)/labels:(?P<labels>\d+)/bcc:(?P<bcc>\d+)/threads:(?P<threads>\d+)")
@@ -76,6 +77,7 @@ def main():
     kept = {name: kept[name] for name in names if name in kept}
     KEPT.write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
     replace_between(arguments.page, "<!-- stages:begin -->", "<!-- stages:end -->", table(kept))
+    speed_plots.draw_stages(arguments.page.parent, {name: CASE.match(name).groupdict() | kept[name] for name in kept})
 
 
 if __name__ == "__main__":

@@ -35,4 +35,21 @@ LabelImage wavy_bricks(std::size_t side, std::size_t labels) {
   return image;
 }
 
+LabelImage small_ball(std::size_t side, double radius) {
+  LabelImage image;
+  image.size = {side, side, side};
+  image.voxels.assign(side * side * side, 0);
+  const double middle = 0.5 * static_cast<double>(side - 1);
+  std::size_t voxel = 0;
+  for (std::size_t k = 0; k < side; ++k) {
+    for (std::size_t j = 0; j < side; ++j) {
+      for (std::size_t i = 0; i < side; ++i, ++voxel) {
+        const auto off = [&](std::size_t index) { return static_cast<double>(index) - middle; };
+        image.voxels[voxel] = std::hypot(off(i), off(j), off(k)) <= radius ? 1 : 0;
+      }
+    }
+  }
+  return image;
+}
+
 }  // namespace anatomesh::benchmarks

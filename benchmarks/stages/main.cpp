@@ -4,6 +4,7 @@
 
 #include "anatomesh/image_to_mesh.h"
 #include "base/parallel.h"
+#include "benchmarks/stages/bricks.h"
 #include "benchmarks/stages/case.h"
 #include "deform/deform.h"
 #include "lattice/label_lattice.h"
@@ -101,7 +102,17 @@ void image_to_mesh_(benchmark::State& state) {
   count_tets(state, tets);
 }
 
-// A small image without much to mesh: what a call costs at least.
+// All that there is in the image is a ball of six voxels: what a call costs at least.
+void fixed_cost(benchmark::State& state) {
+  const Case c(state);
+  const LabelImage image = small_ball(c.side, 6);
+  std::size_t tets = 0;
+  Options options;
+  options.threads = c.threads;
+  for (auto _ : state) tets = image_to_mesh(image, options).mesh.tets.size();
+  count_tets(state, tets);
+}
+
 void default_options(benchmark::State& state) {
   const Case c(state);
   std::size_t tets = 0;
@@ -123,8 +134,18 @@ BENCHMARK(image_to_mesh_)
     ->ArgNames({"side", "labels", "bcc", "threads"})
     ->Unit(benchmark::kMillisecond)
     ->Iterations(1)
+    ->Args({256, 4, 1000, kThreads})
     ->Args({256, 4, 500, kThreads})
-    ->Args({256, 4, 300, kThreads});
+    ->Args({256, 4, 300, kThreads})
+    ->Args({256, 4, 200, kThreads})
+    ->Args({256, 4, 130, kThreads});
+BENCHMARK(fixed_cost)
+    ->Name("fixed_cost")
+    ->UseRealTime()
+    ->ArgNames({"side", "labels", "bcc", "threads"})
+    ->Unit(benchmark::kMillisecond)
+    ->Args({128, 1, 0, kThreads})
+    ->Args({256, 1, 0, kThreads});
 BENCHMARK(default_options)
     ->Name("default_options")
     ->UseRealTime()
