@@ -24,7 +24,7 @@ namespace {
 
 constexpr int kSmoothings = 2;       // before interface vertices are collapsed
 constexpr int kLaterSmoothings = 2;  // after they were
-constexpr int kSettleSweeps = 4;
+constexpr int kSettleSweeps = 3;
 constexpr int kRounds = 10;
 constexpr int kToleranceSteps = 3;
 constexpr double kEnoughSlack = 0.03;   // tetrahedra with less are worth improving: some 5 degrees above 20
