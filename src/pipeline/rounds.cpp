@@ -270,6 +270,7 @@ bool Rounds::must_retry(const std::vector<Fidelity>& approached, const std::vect
 DeformedMesh Rounds::run() {
   build();
   if (options_.fidelity_stage == FidelityStage::lattice) {
+    builder_.reset();  // no other lattice will be asked for: room for the deformation
     deformer_.approach(lattice_.mesh, part(0, 0.5));
     stage_done_("deform");
     return finish(std::move(lattice_.mesh), 0);
