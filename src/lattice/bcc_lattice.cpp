@@ -21,14 +21,6 @@ LatticePoint shifted(LatticePoint point, std::size_t axis, std::int32_t by) {
 
 }  // namespace
 
-BccFrame::BccFrame(const LatticePoint& b) {
-  p = (b[0] & 1) ? 0 : (b[1] & 1) ? 1 : 2;
-  q = (p + 1) % 3;
-  r = (p + 2) % 3;
-  if ((b[q] & 3) == 0) std::swap(q, r);
-  towards_centre = (b[p] & 3) == 1 ? 1 : -1;
-}
-
 bool is_bcc_barycentre(const LatticePoint& b) {
   std::array<int, 4> seen = {0, 0, 0, 0};
   for (const std::int32_t c : b) ++seen[static_cast<std::size_t>(c & 3)];
@@ -138,8 +130,8 @@ LatticePoint bcc_locate(Vec3 x) {
   return b;
 }
 
-int bcc_child_at(const LatticePoint& b, Vec3 x) {
-  const LocalOffset d(b, BccFrame(b), x);
+int bcc_child_at(const LatticePoint& b, const BccFrame& frame, Vec3 x) {
+  const LocalOffset d(b, frame, x);
   if (d.q <= -(1 + d.p)) return 0;
   if (d.q >= 1 + d.p) return 1;
   if (d.r <= -(1 - d.p)) return 2;

@@ -36,7 +36,13 @@ struct BccFrame {
   std::size_t p, q, r;
   std::int32_t towards_centre;  ///< +1: the centre edge lies at b_p + 1, the corner edge at b_p - 1; -1: reverse
 
-  explicit BccFrame(const LatticePoint& barycentre);
+  explicit BccFrame(const LatticePoint& b) {
+    p = (b[0] & 1) ? 0 : (b[1] & 1) ? 1 : 2;
+    q = p == 2 ? 0 : p + 1;
+    r = 3 - p - q;
+    if ((b[q] & 3) == 0) std::swap(q, r);
+    towards_centre = (b[p] & 3) == 1 ? 1 : -1;
+  }
 };
 
 /// Whether a point is the barycentre of a BCC tetrahedron of its level.
@@ -82,7 +88,10 @@ LatticePoint bcc_locate(Vec3 point);
 
 /// Which of the eight red children (order of bcc_children) holds a point of the tetrahedron: decided by
 /// the signs of a few differences, so every point belongs to exactly one child, also on shared faces.
-int bcc_child_at(const LatticePoint& barycentre, Vec3 point);
+int bcc_child_at(const LatticePoint& barycentre, const BccFrame& frame, Vec3 point);
+inline int bcc_child_at(const LatticePoint& barycentre, Vec3 point) {
+  return bcc_child_at(barycentre, BccFrame(barycentre), point);
+}
 
 /// Barycentric coordinates of a real point, times 4: their sum is 4.
 std::array<double, 4> bcc_barycentric_times_4(const LatticePoint& barycentre, Vec3 point);

@@ -29,6 +29,7 @@ class RedGreenLattice {
  public:
   RedGreenLattice(std::array<std::int32_t, 3> root_cells, int max_level);
 
+  std::array<std::int32_t, 3> root_cells() const { return root_cells_; }
   int max_level() const { return static_cast<int>(levels_.size()) - 1; }
 
   /// Places in the arrays of a level (12 a lattice cube that holds any; not all of them exist).

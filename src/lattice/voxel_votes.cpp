@@ -1,11 +1,11 @@
 #include "lattice/voxel_votes.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 #include "base/parallel.h"
 #include "base/vec.h"
+#include "lattice/root_voxels.h"
 
 namespace anatomesh {
 namespace {
@@ -59,7 +59,8 @@ Vec3 blend(const std::array<Vec3, 4>& corners, const std::array<double, 4>& weig
 VoxelVotes::VoxelVotes(const TissueImage& image, const RedGreenLattice& lattice, Vec3 origin_mm, double unit_mm)
     : image_(image),
       lattice_(lattice),
-      order_(image.voxels.size()),
+      rows_per_voxel_(1.0 / image.size[0]),
+      layers_per_row_(1.0 / image.size[1]),
       begin_(static_cast<std::size_t>(lattice.max_level()) + 1),
       votes_(static_cast<std::size_t>(lattice.max_level()) + 1) {
   for (std::size_t a = 0; a < 3; ++a) {
@@ -68,54 +69,28 @@ VoxelVotes::VoxelVotes(const TissueImage& image, const RedGreenLattice& lattice,
     index_per_unit_[a] = unit_mm / image.spacing_mm[a];
     index_of_origin_[a] = origin_mm[a] / image.spacing_mm[a] - static_cast<double>(image.first[a]);
   }
-  sort_into_roots();
+  vote_in_roots();
 }
 
+// Quotients are those of integers: they are at least half a part away from the next one, far beyond rounding.
 Vec3 VoxelVotes::position(std::uint32_t voxel, int level) const {
   const auto nx = static_cast<std::uint32_t>(image_.size[0]), ny = static_cast<std::uint32_t>(image_.size[1]);
   const double scale = static_cast<double>(1 << level);
-  const std::uint32_t row = voxel / nx;
-  return {scale * position_[0][voxel % nx], scale * position_[1][row % ny], scale * position_[2][row / ny]};
+  const auto row = static_cast<std::uint32_t>((voxel + 0.5) * rows_per_voxel_);
+  const auto layer = static_cast<std::uint32_t>((row + 0.5) * layers_per_row_);
+  return {scale * position_[0][voxel - row * nx], scale * position_[1][row - layer * ny], scale * position_[2][layer]};
 }
 
-// Counting sort. Threads fill a tetrahedron's list in any order; nothing reads more than its set.
-void VoxelVotes::sort_into_roots() {
-  const std::size_t slots = lattice_.slot_count(0);
-  const auto nx = static_cast<std::size_t>(image_.size[0]), rows = image_.voxels.size() / nx;
-  std::vector<std::atomic<std::uint32_t>> fill(slots);
-  const auto for_each_voxel = [&](auto&& visit) {
-    parallel_for(
-        rows,
-        [&](std::size_t row) {
-          const double y = position_[1][row % static_cast<std::size_t>(image_.size[1])];
-          const double z = position_[2][row / static_cast<std::size_t>(image_.size[1])];
-          for (std::size_t i = 0; i < nx; ++i) {
-            TetRef t;  // background at the crop's border may lie outside the lattice
-            if (lattice_.find(0, bcc_locate({position_[0][i], y, z}), t))
-              visit(t.slot, static_cast<std::uint32_t>(row * nx + i));
-          }
-        },
-        64);
-  };
-  for_each_voxel([&](std::uint32_t slot, std::uint32_t) { fill[slot].fetch_add(1, std::memory_order_relaxed); });
-  auto& begin = begin_[0];
-  begin.resize(slots);
-  votes_[0].resize(slots);
-  std::uint32_t next = 0;
-  for (std::size_t s = 0; s < slots; ++s) {
-    begin[s] = next;
-    votes_[0][s].count = fill[s];
-    next += fill[s];
-    fill[s] = begin[s];
-  }
-  for_each_voxel([&](std::uint32_t slot, std::uint32_t voxel) {
-    order_[fill[slot].fetch_add(1, std::memory_order_relaxed)] = voxel;
-  });
+void VoxelVotes::vote_in_roots() {
+  RootVoxels roots = sort_into_roots(position_, lattice_.root_cells());
+  order_ = std::move(roots.order);
+  begin_[0] = std::move(roots.begin);
+  votes_[0].resize(lattice_.slot_count(0));
   parallel_for(
-      slots,
+      votes_[0].size(),
       [&](std::size_t s) {
-        const TetRef t = {0, static_cast<std::uint32_t>(s)};
-        votes_[0][s] = count_votes({&order_[0] + begin[s], votes_[0][s].count}, corners_in_voxels(t));
+        const std::uint32_t first = begin_[0][s], count = begin_[0][s + 1] - first;
+        votes_[0][s] = count_votes({&order_[0] + first, count}, corners_in_voxels({0, static_cast<std::uint32_t>(s)}));
       },
       64);
 }
@@ -148,10 +123,11 @@ void VoxelVotes::hand_down(TetRef parent) {
   }
   const LatticePoint b = lattice_.barycentre(parent);
   std::uint32_t* const first = &order_[0] + begin_[level][parent.slot];
+  const BccFrame frame(b);
   thread_local std::array<std::vector<std::uint32_t>, 8> parts;
   for (auto& part : parts) part.clear();
   for (std::uint32_t v = 0; v < whole.count; ++v)
-    parts[static_cast<std::size_t>(bcc_child_at(b, position(first[v], parent.level)))].push_back(first[v]);
+    parts[static_cast<std::size_t>(bcc_child_at(b, frame, position(first[v], parent.level)))].push_back(first[v]);
   std::uint32_t next = begin_[level][parent.slot];
   for (std::size_t c = 0; c < 8; ++c) {
     std::copy(parts[c].begin(), parts[c].end(), &order_[0] + next);
@@ -250,15 +226,27 @@ std::array<Vec3, 4> VoxelVotes::corners_in_voxels(TetRef t) const {
   return corners;
 }
 
-Vote VoxelVotes::count_votes(std::span<const std::uint32_t> voxels, const std::array<Vec3, 4>& corners) const {
+// The tissue of most voxels, and of how many.
+std::pair<TissueId, std::uint32_t> VoxelVotes::most_frequent(std::span<const std::uint32_t> voxels) const {
+  if (voxels.empty()) return {0, 0};
+  const TissueId first = image_.voxels[voxels[0]];
+  std::size_t same = 1;
+  while (same < voxels.size() && image_.voxels[voxels[same]] == first) ++same;
+  if (same == voxels.size()) return {first, static_cast<std::uint32_t>(same)};
   Ballot& ballot = thread_ballot();
-  for (const std::uint32_t v : voxels) ballot.add(image_.voxels[v], 1);
+  ballot.add(first, static_cast<double>(same));
+  for (const std::uint32_t v : voxels.subspan(same)) ballot.add(image_.voxels[v], 1);
+  const auto [tissue, votes] = ballot.winner();
+  return {tissue, static_cast<std::uint32_t>(votes)};
+}
+
+Vote VoxelVotes::count_votes(std::span<const std::uint32_t> voxels, const std::array<Vec3, 4>& corners) const {
+  const auto [tissue, votes] = most_frequent(voxels);
   Vote result;
   result.count = static_cast<std::uint32_t>(voxels.size());
-  const auto [tissue, votes] = ballot.winner();
-  const bool unanimous = votes == static_cast<double>(voxels.size()) && !voxels.empty();
+  const bool unanimous = votes == result.count && !voxels.empty();
   result.tissue = tissue;
-  result.hits = static_cast<std::uint32_t>(votes);
+  result.hits = votes;
   if (result.count < kQuorum) {
     const TissueId chosen = interpolated_tissue(corners);
     if (chosen != tissue || voxels.empty()) {

@@ -69,11 +69,12 @@ class VoxelVotes {
 
   using GreenVoxels = std::array<std::vector<std::uint32_t>, 4>;
 
-  void sort_into_roots();
+  void vote_in_roots();
   const GreenVoxels& voxels_of_green_parts(TetRef leaf) const;
   void hand_down(TetRef parent);
   void hand_down_again(TetRef parent);
   Vec3 position(std::uint32_t voxel, int level) const;
+  std::pair<TissueId, std::uint32_t> most_frequent(std::span<const std::uint32_t> voxels) const;
   Vote count_votes(std::span<const std::uint32_t> voxels, const std::array<Vec3, 4>& corners) const;
   std::optional<TissueId> only_tissue(const std::array<int, 3>& low, const std::array<int, 3>& high) const;
   TissueId interpolated_tissue(const std::array<Vec3, 4>& corners) const;
@@ -83,6 +84,7 @@ class VoxelVotes {
   const TissueImage& image_;
   const RedGreenLattice& lattice_;
   std::array<std::vector<double>, 3> position_;    // of voxel centres along each axis, in units of level 0
+  double rows_per_voxel_, layers_per_row_;
   Vec3 index_per_unit_, index_of_origin_;          // lattice point of level 0 -> voxel index
   std::vector<std::uint32_t> order_;               // all voxels of the crop, grouped by tetrahedron
   std::vector<std::vector<std::uint32_t>> begin_;  // by level and slot: first place in order_
