@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/parallel.h"
 #include "base/vec.h"
 
 namespace anatomesh {
@@ -32,59 +33,117 @@ LeafMesh LeafMesher::mesh(const std::vector<LabelledLeaf>& leaves) {
   places_.resize(static_cast<std::size_t>(lattice_.max_level()) + 1);
   for (int level = 0; level <= lattice_.max_level(); ++level)
     places_[static_cast<std::size_t>(level)].resize(lattice_.slot_count(level));
-  const Tets old = std::move(tets_);
-  LeafMesh result;
-  Tets& tets = result.mesh.tets;
-  for (const bool bulk : {false, true}) {
-    for (std::uint32_t i = 0; i < leaves.size(); ++i) {
-      const LabelledLeaf& leaf = leaves[i];
-      const bool is_bulk = leaf.votes[0].tissue == 0 && !leaf.decided && votes_.hands_label_down(leaf.tet);
-      if (is_bulk != bulk) continue;
-      const std::size_t first = tets.size();
-      add(leaf, bulk, old, tets);
-      for (std::uint32_t part = 0; part < tets.size() - first; ++part) {
-        result.mesh.tissues.push_back(leaf.votes[part].tissue);
-        result.origins.push_back({i, part});
-      }
-    }
+  std::vector<Entry> entries = make_entries(leaves);
+  Tets added;
+  for (std::size_t i = 0; i < leaves.size(); ++i) {
+    if (entries[i].bulk) continue;
+    if (!entries[i].known) add(leaves[i], entries[i], added);
+    if (!entries[i].known || place_of(leaves[i].tet).bulk) mark_near(leaves[i], entries[i], added);
   }
-  tets_ = tets;
-  result.points = vertices_.points();
-  const double fine_unit = std::ldexp(unit_mm_, -lattice_.max_level());
-  for (const LatticePoint& p : result.points)
-    result.mesh.points_mm.push_back(origin_mm_ + Vec3{fine_unit * p[0], fine_unit * p[1], fine_unit * p[2]});
+  want_bulk_near(leaves, entries);
+  for (std::size_t i = 0; i < leaves.size(); ++i) {
+    if (entries[i].bulk && entries[i].wanted && !entries[i].known) add(leaves[i], entries[i], added);
+  }
+  near_.resize(vertices_.points().size());
+  LeafMesh result = gather(leaves, entries, added);
+  place_vertices(result);
+  tets_ = result.mesh.tets;
   return result;
 }
 
-// Its tetrahedra; of bulk background only where it touches something else.
-void LeafMesher::add(const LabelledLeaf& leaf, bool bulk, const Tets& old, Tets& tets) {
-  Place& place = places_[static_cast<std::size_t>(leaf.tet.level)][leaf.tet.slot];
-  const auto parts = static_cast<std::size_t>(leaf.split().count), first = tets.size();
-  if (place.first_tet != Place{}.first_tet && place.split_edges == leaf.split_edges) {
-    tets.insert(tets.end(), old.begin() + place.first_tet,
-                old.begin() + place.first_tet + static_cast<std::ptrdiff_t>(parts));
-  } else {
-    const auto nodes = nodes_of(lattice_, leaf.tet, leaf.split_edges);
-    if (bulk && !touches_near(nodes)) return;
-    const bool positive = is_positive(lattice_.barycentre(leaf.tet));
-    for (std::size_t part = 0; part < parts; ++part) {
-      std::array<VertexId, 4> tet;
-      for (std::size_t n = 0; n < 4; ++n) tet[n] = vertices_.insert(nodes[leaf.split().tets[part][n]]);
-      if (!positive) std::swap(tet[2], tet[3]);
-      tets.push_back(tet);
+std::vector<LeafMesher::Entry> LeafMesher::make_entries(const std::vector<LabelledLeaf>& leaves) const {
+  std::vector<Entry> entries(leaves.size());
+  parallel_for(leaves.size(), [&](std::size_t i) {
+    const LabelledLeaf& leaf = leaves[i];
+    const Place& place = place_of(leaf.tet);
+    Entry& entry = entries[i];
+    entry.bulk = leaf.votes[0].tissue == 0 && !leaf.decided && votes_.hands_label_down(leaf.tet);
+    entry.known = place.first_tet != kNone && place.split_edges == leaf.split_edges;
+    entry.wanted = !entry.bulk || entry.known;
+  });
+  return entries;
+}
+
+// Of the bulk background, what touches something else.
+void LeafMesher::want_bulk_near(const std::vector<LabelledLeaf>& leaves, std::vector<Entry>& entries) const {
+  const auto is_near = [&](const LatticePoint& node) {
+    const std::uint32_t v = vertices_.find(node);
+    return v != LatticePointMap::kNone && near_[v];
+  };
+  parallel_for(leaves.size(), [&](std::size_t i) {
+    if (entries[i].wanted) return;
+    entries[i].wanted = std::ranges::any_of(nodes_of(lattice_, leaves[i].tet, leaves[i].split_edges), is_near);
+  });
+}
+
+void LeafMesher::add(const LabelledLeaf& leaf, Entry& entry, Tets& added) {
+  const auto nodes = nodes_of(lattice_, leaf.tet, leaf.split_edges);
+  const bool positive = is_positive(lattice_.barycentre(leaf.tet));
+  const GreenSplit& split = leaf.split();
+  entry.first_new = static_cast<std::uint32_t>(added.size());
+  std::array<VertexId, 10> number;
+  number.fill(LatticePointMap::kNone);
+  for (std::size_t part = 0; part < static_cast<std::size_t>(split.count); ++part) {
+    std::array<VertexId, 4> tet;
+    for (std::size_t n = 0; n < 4; ++n) {
+      VertexId& v = number[split.tets[part][n]];
+      if (v == LatticePointMap::kNone) v = vertices_.insert(nodes[split.tets[part][n]]);
+      tet[n] = v;
     }
-  }
-  place = {static_cast<std::uint32_t>(first), leaf.split_edges};
-  near_.resize(vertices_.points().size());
-  for (std::size_t t = first; !bulk && t < tets.size(); ++t) {
-    for (const VertexId v : tets[t]) near_[v] = 1;
+    if (!positive) std::swap(tet[2], tet[3]);
+    added.push_back(tet);
   }
 }
 
-bool LeafMesher::touches_near(const std::array<LatticePoint, 10>& nodes) const {
-  return std::any_of(nodes.begin(), nodes.end(), [&](const LatticePoint& node) {
-    const std::uint32_t v = vertices_.find(node);
-    return v != LatticePointMap::kNone && near_[v];
+void LeafMesher::mark_near(const LabelledLeaf& leaf, const Entry& entry, const Tets& added) {
+  near_.resize(vertices_.points().size());
+  const std::array<VertexId, 4>* tets = entry.known ? &tets_[place_of(leaf.tet).first_tet] : &added[entry.first_new];
+  for (int part = 0; part < leaf.split().count; ++part) {
+    for (const VertexId v : tets[part]) near_[v] = 1;
+  }
+}
+
+// Bulk background last, else in the order of the leaves.
+LeafMesh LeafMesher::gather(const std::vector<LabelledLeaf>& leaves, const std::vector<Entry>& entries,
+                            const Tets& added) {
+  std::vector<std::uint32_t> first(leaves.size());
+  std::uint32_t count = 0;
+  for (const bool bulk : {false, true}) {
+    for (std::size_t i = 0; i < leaves.size(); ++i) {
+      if (entries[i].bulk != bulk || !entries[i].wanted) continue;
+      first[i] = count;
+      count += static_cast<std::uint32_t>(leaves[i].split().count);
+    }
+  }
+  LeafMesh result;
+  result.mesh.tets.resize(count);
+  result.mesh.tissues.resize(count);
+  result.origins.resize(count);
+  result.from.resize(count);
+  parallel_for(leaves.size(), [&](std::size_t i) {
+    if (!entries[i].wanted) return;
+    const LabelledLeaf& leaf = leaves[i];
+    Place& place = place_of(leaf.tet);
+    const Entry& entry = entries[i];
+    for (std::uint32_t part = 0; part < static_cast<std::uint32_t>(leaf.split().count); ++part) {
+      const std::uint32_t t = first[i] + part;
+      result.mesh.tets[t] = entry.known ? tets_[place.first_tet + part] : added[entry.first_new + part];
+      result.mesh.tissues[t] = leaf.votes[part].tissue;
+      result.origins[t] = {static_cast<std::uint32_t>(i), part};
+      result.from[t] = entry.known ? place.first_tet + part : TetComplex::kNone;
+    }
+    place = {first[i], leaf.split_edges, entry.bulk};
+  });
+  return result;
+}
+
+void LeafMesher::place_vertices(LeafMesh& result) const {
+  result.points = vertices_.points();
+  result.mesh.points_mm.resize(result.points.size());
+  const double fine_unit = std::ldexp(unit_mm_, -lattice_.max_level());
+  parallel_for(result.points.size(), [&](std::size_t v) {
+    const LatticePoint& p = result.points[v];
+    result.mesh.points_mm[v] = origin_mm_ + Vec3{fine_unit * p[0], fine_unit * p[1], fine_unit * p[2]};
   });
 }
 

@@ -6,6 +6,7 @@
 
 #include "lattice/labelled_leaves.h"
 #include "lattice/lattice_point_map.h"
+#include "lattice/tet_complex.h"
 #include "mesh/tissue_mesh.h"
 
 namespace anatomesh {
@@ -20,6 +21,7 @@ struct LeafMesh {
   TissueMesh mesh;
   std::vector<LatticePoint> points;  ///< of the vertices, in units of the finest level
   std::vector<Origin> origins;       ///< of the tetrahedra
+  std::vector<TetId> from;           ///< what number a tetrahedron had in the mesh made before, or TetComplex::kNone
 };
 
 /// Makes the mesh again and again while the lattice is refined: vertices keep their numbers, and the tetrahedra of
@@ -33,14 +35,27 @@ class LeafMesher {
   LeafMesh mesh(const std::vector<LabelledLeaf>& leaves);
 
  private:
+  static constexpr std::uint32_t kNone = ~0u;
   using Tets = std::vector<std::array<VertexId, 4>>;
   struct Place {
-    std::uint32_t first_tet = ~0u;
+    std::uint32_t first_tet = kNone;
     std::uint8_t split_edges = 0;
+    bool bulk = false;
+  };
+  /// What becomes of a leaf.
+  struct Entry {
+    bool bulk = false, known = false, wanted = false;
+    std::uint32_t first_new = kNone;  ///< of its tetrahedra among the new ones
   };
 
-  void add(const LabelledLeaf& leaf, bool bulk, const Tets& old, Tets& tets);
-  bool touches_near(const std::array<LatticePoint, 10>& nodes) const;
+  Place& place_of(TetRef leaf) { return places_[static_cast<std::size_t>(leaf.level)][leaf.slot]; }
+  const Place& place_of(TetRef leaf) const { return places_[static_cast<std::size_t>(leaf.level)][leaf.slot]; }
+  std::vector<Entry> make_entries(const std::vector<LabelledLeaf>& leaves) const;
+  void want_bulk_near(const std::vector<LabelledLeaf>& leaves, std::vector<Entry>& entries) const;
+  void add(const LabelledLeaf& leaf, Entry& entry, Tets& added);
+  void mark_near(const LabelledLeaf& leaf, const Entry& entry, const Tets& added);
+  LeafMesh gather(const std::vector<LabelledLeaf>& leaves, const std::vector<Entry>& entries, const Tets& added);
+  void place_vertices(LeafMesh& result) const;
 
   const RedGreenLattice& lattice_;
   const VoxelVotes& votes_;

@@ -41,7 +41,7 @@ class LatticeMender {
   LeafMesh run(const Stage& stage) {
     for (int round = 0;; ++round) {
       stage.check_cancelled();
-      take_mesh();
+      take_mesh(round == 0);
       std::vector<TetId> changed, marked;
       mend_around_core(changed);
       if (round == kPieceRounds - 1) std::fill(contents_.may_refine.begin(), contents_.may_refine.end(), char{0});
@@ -54,11 +54,11 @@ class LatticeMender {
       if (last) break;
       refine(marked);
     }
-    return {std::move(complex_.mesh), std::move(points_), std::move(origins_)};
+    return {std::move(complex_.mesh), std::move(points_), std::move(origins_), {}};
   }
 
  private:
-  void take_mesh();
+  void take_mesh(bool first);
   TetContents contents() const;
   void mend_pieces_here(std::vector<TetId>& changed, std::vector<TetId>& marked);
   void mend_around_core(std::vector<TetId>& changed);
@@ -87,9 +87,9 @@ class LatticeMender {
   LatticePointMap core_;  // singular vertices before the last refinement, and the middles of the edges between them
 };
 
-void LatticeMender::take_mesh() {
+void LatticeMender::take_mesh(bool first) {
   LeafMesh taken = mesher_.mesh(leaves_.list());
-  complex_ = make_complex(std::move(taken.mesh));
+  complex_ = first ? make_complex(std::move(taken.mesh)) : remake_complex(complex_, std::move(taken.mesh), taken.from);
   points_ = std::move(taken.points);
   origins_ = std::move(taken.origins);
   pieces_ = find_pieces(complex_);
