@@ -32,7 +32,8 @@ void LabelledLeaves::label(LabelledLeaf& leaf, const std::vector<LabelledLeaf>& 
   if (stayed && old[from].split_edges == leaf.split_edges) {
     leaf = old[from];
     leaf.fresh = false;
-    if (counted(leaf) != votes_.vote(leaf.tet).count) recount(leaf);
+    leaf.recounted = counted(leaf) != votes_.vote(leaf.tet).count;
+    if (leaf.recounted) recount(leaf);
     return;
   }
   leaf.votes = fresh_votes(leaf);

@@ -34,11 +34,14 @@ class LeafMesher {
 
   LeafMesh mesh(const std::vector<LabelledLeaf>& leaves);
 
+  /// The first tetrahedron of a leaf in the last mesh, or TetComplex::kNone.
+  TetId first_tet(TetRef leaf) const { return place_of(leaf).first_tet; }
+
  private:
   static constexpr std::uint32_t kNone = ~0u;
   using Tets = std::vector<std::array<VertexId, 4>>;
   struct Place {
-    std::uint32_t first_tet = kNone;
+    TetId first_tet = TetComplex::kNone;
     std::uint8_t split_edges = 0;
     bool bulk = false;
   };

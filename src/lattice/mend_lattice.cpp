@@ -60,6 +60,7 @@ class LatticeMender {
  private:
   void take_mesh(bool first);
   TetContents contents() const;
+  std::vector<Claim> claims_from(const std::vector<TetId>& from) const;
   void mend_pieces_here(std::vector<TetId>& changed, std::vector<TetId>& marked);
   void mend_around_core(std::vector<TetId>& changed);
   void mend_surfaces_here(bool all, std::vector<TetId>& changed, std::vector<TetId>& marked);
@@ -83,6 +84,7 @@ class LatticeMender {
   std::vector<LatticePoint> points_;
   std::vector<LeafMesh::Origin> origins_;
   TetContents contents_;
+  std::vector<Claim> claims_;
   std::size_t max_tets_ = 0;
   LatticePointMap core_;  // singular vertices before the last refinement, and the middles of the edges between them
 };
@@ -94,6 +96,7 @@ void LatticeMender::take_mesh(bool first) {
   origins_ = std::move(taken.origins);
   pieces_ = find_pieces(complex_);
   contents_ = contents();
+  claims_ = claims_from(taken.from);
 }
 
 TetContents LatticeMender::contents() const {
@@ -101,6 +104,11 @@ TetContents LatticeMender::contents() const {
   contents.voxels = [this](TetId t) {
     const auto [leaf, part] = origins_[t];
     return votes_.voxels_of_part(leaves_.list()[leaf].tet, part);
+  };
+  contents.holder = [this](std::uint32_t voxel) {
+    const auto holder = votes_.holder_of(voxel);
+    const TetId first = holder ? mesher_.first_tet(holder->leaf) : TetComplex::kNone;
+    return first == TetComplex::kNone ? first : first + static_cast<TetId>(holder->part);
   };
   const std::size_t count = origins_.size();
   contents.sizes.resize(count);
@@ -119,9 +127,18 @@ TetContents LatticeMender::contents() const {
   return contents;
 }
 
+// Those of tetrahedra that have stayed.
+std::vector<Claim> LatticeMender::claims_from(const std::vector<TetId>& from) const {
+  std::vector<Claim> claims(from.size());
+  parallel_for(from.size(), [&](std::size_t t) {
+    if (from[t] < claims_.size() && !leaves_.list()[origins_[t].leaf].recounted) claims[t] = claims_[from[t]];
+  });
+  return claims;
+}
+
 // What is marked for the sake of pieces votes anew.
 void LatticeMender::mend_pieces_here(std::vector<TetId>& changed, std::vector<TetId>& marked) {
-  PieceRepair repair = mend_pieces(complex_, pieces_, image_, components_, contents_);
+  PieceRepair repair = mend_pieces(complex_, pieces_, image_, components_, contents_, claims_);
   changed.insert(changed.end(), repair.changed.begin(), repair.changed.end());
   marked = std::move(repair.refine);
   for (const TetId t : marked) leaves_.revote(origins_[t].leaf);

@@ -30,26 +30,36 @@ Vec3 centroid(const TissueMesh& mesh, TetId t) {
   return sum;
 }
 
-// The component that a tetrahedron stands for, and by how many voxels of it.
-struct Claim {
-  std::uint32_t component = kNone;
-  std::uint32_t voxels = 0;
-};
-
 // Voxels of a component in a piece.
 struct Holding {
   std::uint32_t piece, component, voxels;
+  bool is_of(std::uint32_t p, std::uint32_t c) const { return piece == p && component == c; }
 };
+
+// One for each piece and component, in ascending order.
+void merge_holdings(std::vector<Holding>& holdings) {
+  std::ranges::sort(holdings, {}, [](const Holding& h) { return std::pair(h.piece, h.component); });
+  std::size_t kept = 0;
+  for (const Holding& h : holdings) {
+    if (kept > 0 && holdings[kept - 1].is_of(h.piece, h.component)) {
+      holdings[kept - 1].voxels += h.voxels;
+    } else {
+      holdings[kept++] = h;
+    }
+  }
+  holdings.resize(kept);
+}
 
 class PieceMender {
  public:
   PieceMender(TetComplex& complex, Pieces& pieces, const TissueImage& image, const ImageComponents& components,
-              const TetContents& contents)
+              const TetContents& contents, std::vector<Claim>& claims)
       : complex_(complex),
         pieces_(pieces),
         image_(image),
         components_(components),
         contents_(contents),
+        claims_(claims),
         price_(voxel_price(complex, image, contents)),
         locked_(contents.decided) {}
 
@@ -79,9 +89,11 @@ class PieceMender {
   void find_open_tissues();
   Claim claim_of(TetId t) const;
   void find_claims(std::size_t done);
+  void list_holdings();
   void find_holdings();
   void dissolve_empty_pieces();
   void dissolve(const std::vector<TetId>& tets);
+  std::vector<Holding> find_absent_components() const;
   void seed_absent_components();
   void cut_shared_pieces();
   void cut(const std::vector<TetId>& tets);
@@ -106,13 +118,13 @@ class PieceMender {
   const TissueImage& image_;
   const ImageComponents& components_;
   const TetContents& contents_;
+  std::vector<Claim>& claims_;  // by tetrahedron, of open tissues
   RelabelPrice price_;
   std::vector<char> locked_;  // relabelled by a repair: others go around it
   PieceRepair repair_;
 
   std::vector<char> open_;           // by tissue: more than one piece or component
   std::vector<char> claimed_;        // by tissue: its claims are known
-  std::vector<Claim> claims_;        // by tetrahedron, of open tissues
   std::vector<Holding> holdings_;    // by piece and component
   std::vector<std::uint32_t> main_;  // by piece: the component that it has most voxels of, kNone for none
   std::vector<std::uint32_t> home_;  // by component: the piece that has most of its voxels, kNone for none
@@ -139,22 +151,21 @@ Claim PieceMender::claim_of(TetId t) const {
     std::size_t n = 0;
     while (n < count && found[n].component != component) ++n;
     if (n == found.size()) continue;
-    if (n == count) found[count++].component = component;
+    if (n == count) found[count++] = {component, 0, own};
     ++found[n].voxels;
-    if (voxels.size() > kMany && contents_.fixed[t]) return {component, static_cast<std::uint32_t>(voxels.size())};
+    if (voxels.size() > kMany && contents_.fixed[t]) return {component, static_cast<std::uint32_t>(voxels.size()), own};
   }
   const auto more = [](const Claim& a, const Claim& b) {
     return std::pair(a.voxels, b.component) < std::pair(b.voxels, a.component);
   };
   if (count > 0) return *std::max_element(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count), more);
   const auto voxel = voxel_at(image_, centroid(complex_.mesh, t));
-  if (voxel && image_.voxels[*voxel] == own) return {components_.of(*voxel), 0};
-  return {};
+  if (voxel && image_.voxels[*voxel] == own) return {components_.of(*voxel), 0, own};
+  return {kNone, 0, own};
 }
 
 // Of the tissues that were not open before, and of the tetrahedra relabelled since `done`.
 void PieceMender::find_claims(std::size_t done) {
-  claims_.resize(complex_.mesh.tets.size());
   claimed_.resize(open_.size());
   for (std::size_t i = done; i < repair_.changed.size(); ++i) {
     const TetId t = repair_.changed[i];
@@ -163,29 +174,32 @@ void PieceMender::find_claims(std::size_t done) {
   if (claimed_ != open_) {
     parallel_for(claims_.size(), [&](std::size_t t) {
       const TissueId tissue = complex_.mesh.tissues[t];
-      if (open_[tissue] && !claimed_[tissue]) claims_[t] = claim_of(static_cast<TetId>(t));
+      if (!open_[tissue] || claimed_[tissue] || claims_[t].of == tissue) return;
+      claims_[t] = claim_of(static_cast<TetId>(t));
     });
   }
   for (std::size_t t = 0; t < open_.size(); ++t) claimed_[t] = claimed_[t] || open_[t];
 }
 
-void PieceMender::find_holdings() {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> voxels;
-  std::pair<std::uint32_t, std::uint32_t> last = {kNone, kNone};
-  std::uint32_t* sum = nullptr;
-  for (TetId t = 0; t < claims_.size(); ++t) {
-    if (claims_[t].component == kNone || !open_[complex_.tissue(t)]) continue;
-    const std::pair key = {pieces_.of_tet[t], claims_[t].component};
-    if (key != last || !sum) sum = &voxels[key];
-    last = key;
-    *sum += claims_[t].voxels;
-  }
+void PieceMender::list_holdings() {
   holdings_.clear();
+  for (TetId t = 0; t < claims_.size(); ++t) {
+    const Claim& claim = claims_[t];
+    if (claim.component == kNone || !open_[complex_.tissue(t)]) continue;
+    const std::uint32_t piece = pieces_.of_tet[t];
+    if (holdings_.empty() || !holdings_.back().is_of(piece, claim.component))
+      holdings_.push_back({piece, claim.component, 0});
+    holdings_.back().voxels += claim.voxels;
+  }
+  merge_holdings(holdings_);
+}
+
+void PieceMender::find_holdings() {
+  list_holdings();
   main_.assign(pieces_.list.size(), kNone);
   home_.assign(components_.list().size(), kNone);
   std::vector<std::uint32_t> most_of_piece(main_.size(), 0), most_of_component(home_.size(), 0);
-  for (const auto& [key, count] : voxels) {
-    const auto [piece, component] = key;
+  for (const auto& [piece, component, count] : holdings_) {
     if (main_[piece] == kNone || count > most_of_piece[piece]) {
       main_[piece] = component;
       most_of_piece[piece] = count;
@@ -194,7 +208,6 @@ void PieceMender::find_holdings() {
       home_[component] = piece;
       most_of_component[component] = count;
     }
-    holdings_.push_back({piece, component, count});
   }
   // A component whose home is mainly another's may be at home in a piece of its own elsewhere.
   for (const Holding& h : holdings_) {
@@ -204,6 +217,7 @@ void PieceMender::find_holdings() {
 
 std::vector<std::vector<TetId>> PieceMender::tets_of(const std::vector<char>& wanted) const {
   std::vector<std::vector<TetId>> tets(pieces_.list.size());
+  if (std::ranges::none_of(wanted, [](char w) { return w; })) return tets;
   for (TetId t = 0; t < pieces_.of_tet.size(); ++t) {
     if (const std::uint32_t piece = pieces_.of_tet[t]; piece != kNone && wanted[piece]) tets[piece].push_back(t);
   }
@@ -244,47 +258,36 @@ void PieceMender::dissolve(const std::vector<TetId>& tets) {
   }
 }
 
-void PieceMender::seed_absent_components() {
-  std::vector<char> absent_in(image_.labels.size());
-  bool any = false;
-  for (std::size_t c = 0; c < home_.size(); ++c) {
-    const TissueId tissue = components_.list()[c].tissue;
-    if (!open_[tissue] || home_[c] != kNone) continue;
-    absent_in[tissue] = 1;
-    any = true;
-  }
-  if (!any) return;
-  std::vector<std::vector<Claim>> found(complex_.mesh.tets.size());  // voxels of absent components
-  parallel_for(found.size(), [&](std::size_t t) {
-    for (const std::uint32_t v : contents_.voxels(static_cast<TetId>(t))) {
-      if (!absent_in[image_.voxels[v]]) continue;
-      const std::uint32_t component = components_.of(v);
-      if (home_[component] != kNone) continue;
-      auto& list = found[t];
-      const auto at = std::find_if(list.begin(), list.end(), [&](const Claim& c) { return c.component == component; });
-      if (at == list.end()) {
-        list.push_back({component, 1});
-      } else {
-        ++at->voxels;
-      }
+// Where the voxels of components are that no tetrahedron has taken: holdings of tetrahedra, not pieces.
+std::vector<Holding> PieceMender::find_absent_components() const {
+  std::vector<char> absent(home_.size());
+  for (std::size_t c = 0; c < home_.size(); ++c) absent[c] = home_[c] == kNone && open_[components_.list()[c].tissue];
+  std::vector<Holding> found;
+  if (std::ranges::none_of(absent, [](char a) { return a; })) return found;
+  for (const auto& run : components_.runs()) {
+    for (std::uint32_t v = run.begin; absent[run.component] && v < run.end; ++v) {
+      if (const TetId t = contents_.holder(v); t != TetComplex::kNone) found.push_back({t, run.component, 1});
     }
-  });
+  }
+  merge_holdings(found);
+  return found;
+}
+
+void PieceMender::seed_absent_components() {
   struct Seed {
     double price = kTooDear;
     TetId tet = 0;
   };
   std::map<std::uint32_t, Seed> seeds;
-  for (TetId t = 0; t < found.size(); ++t) {
-    for (const Claim& c : found[t]) {
-      Seed& seed = seeds[c.component];
-      if (wants_refinement(t, kSeedSize)) continue;
-      if (touches_other_component(t, c.component)) {
-        wants_refinement(t, kTightSize / 4);
-        continue;
-      }
-      const double price = price_(t, components_.list()[c.component].tissue) - c.voxels;
-      if (price < seed.price) seed = {price, t};
+  for (const auto& [t, component, voxels] : find_absent_components()) {
+    Seed& seed = seeds[component];
+    if (wants_refinement(t, kSeedSize)) continue;
+    if (touches_other_component(t, component)) {
+      wants_refinement(t, kTightSize / 4);
+      continue;
     }
+    const double price = price_(t, components_.list()[component].tissue) - voxels;
+    if (price < seed.price) seed = {price, t};
   }
   for (const auto& [component, seed] : seeds) {
     if (seed.price < kTooDear) relabel(seed.tet, components_.list()[component].tissue, kNone);
@@ -484,8 +487,9 @@ RelabelPrice voxel_price(const TetComplex& complex, const TissueImage& image, co
 }
 
 PieceRepair mend_pieces(TetComplex& complex, Pieces& pieces, const TissueImage& image,
-                        const ImageComponents& components, const TetContents& contents) {
-  return PieceMender(complex, pieces, image, components, contents).run();
+                        const ImageComponents& components, const TetContents& contents, std::vector<Claim>& claims) {
+  claims.resize(complex.mesh.tets.size());
+  return PieceMender(complex, pieces, image, components, contents, claims).run();
 }
 
 }  // namespace anatomesh

@@ -19,10 +19,19 @@ struct TetContents {
   /// Offsets of the voxels inside a tetrahedron; empty for the parts of a large pure one. Good until the thread's next
   /// call. Called in parallel.
   std::function<std::span<const std::uint32_t>(TetId)> voxels;
+  /// The tetrahedron among whose voxels one is, or TetComplex::kNone.
+  std::function<TetId(std::uint32_t)> holder;
   std::vector<float> sizes;      ///< volumes, in voxels
   std::vector<char> fixed;       ///< inside a large pure tetrahedron: keeps its tissue
   std::vector<char> may_refine;  ///< whether the lattice can be refined there
   std::vector<char> decided;     ///< its tissue was given by an earlier repair
+};
+
+/// The component that a tetrahedron stands for, and by how many voxels of it.
+struct Claim {
+  std::uint32_t component = Pieces::kNone;
+  std::uint32_t voxels = 0;
+  TissueId of = 0;  ///< the tissue that it was found for; background: not found yet
 };
 
 /// Offset of the voxel that a point (mm, in the image's frame) lies in; none outside the crop.
@@ -40,7 +49,8 @@ struct PieceRepair {
 /// Pieces without a voxel of their own go to what surrounds them; a component that no tetrahedron has taken
 /// gets the one with most of its voxels; pieces of one component are joined along the cheapest path of tetrahedra; a
 /// piece that holds several components is cut half way between them. One repair may call for another: a few passes.
+/// claims: by tetrahedron; those found before are relied on, others are added where they are needed.
 PieceRepair mend_pieces(TetComplex& complex, Pieces& pieces, const TissueImage& image,
-                        const ImageComponents& components, const TetContents& contents);
+                        const ImageComponents& components, const TetContents& contents, std::vector<Claim>& claims);
 
 }  // namespace anatomesh

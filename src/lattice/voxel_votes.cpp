@@ -1,6 +1,7 @@
 #include "lattice/voxel_votes.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "base/parallel.h"
@@ -50,6 +51,11 @@ Ballot& thread_ballot() {
   return ballot;
 }
 
+std::uint64_t new_state() {
+  static std::atomic<std::uint64_t> states = 0;
+  return ++states;
+}
+
 Vec3 blend(const std::array<Vec3, 4>& corners, const std::array<double, 4>& weight) {
   return weight[0] * corners[0] + weight[1] * corners[1] + weight[2] * corners[2] + weight[3] * corners[3];
 }
@@ -70,6 +76,7 @@ VoxelVotes::VoxelVotes(const TissueImage& image, const RedGreenLattice& lattice,
     index_of_origin_[a] = origin_mm[a] / image.spacing_mm[a] - static_cast<double>(image.first[a]);
   }
   vote_in_roots();
+  state_ = new_state();
 }
 
 // Quotients are those of integers: they are at least half a part away from the next one, far beyond rounding.
@@ -96,6 +103,7 @@ void VoxelVotes::vote_in_roots() {
 }
 
 void VoxelVotes::descend(const std::vector<TetRef>& refined) {
+  state_ = new_state();
   for (std::size_t level = 1; level < votes_.size(); ++level) {
     begin_[level].resize(lattice_.slot_count(static_cast<int>(level)));
     votes_[level].resize(lattice_.slot_count(static_cast<int>(level)));
@@ -139,8 +147,9 @@ void VoxelVotes::hand_down(TetRef parent) {
 }
 
 void VoxelVotes::keep_voxels(TetRef t) {
+  state_ = new_state();
   const auto level = static_cast<std::size_t>(t.level);
-  if (begin_[level][t.slot] == kInherited) {
+  if (is_inherited(t)) {
     TetRef parent;
     lattice_.find(t.level - 1, bcc_parent(lattice_.barycentre(t)), parent);
     keep_voxels(parent);
@@ -164,11 +173,35 @@ std::span<const std::uint32_t> VoxelVotes::voxels(TetRef t) const {
                  : std::span<const std::uint32_t>();
 }
 
-// Good until the thread's next call.
+std::optional<VoxelVotes::Holder> VoxelVotes::holder_of(std::uint32_t voxel) const {
+  TetRef t;
+  if (!lattice_.find(0, bcc_locate(position(voxel, 0)), t)) return {};
+  while (lattice_.is_refined(t)) {
+    const LatticePoint b = lattice_.barycentre(t);
+    const auto child = static_cast<std::size_t>(bcc_child_at(b, position(voxel, t.level)));
+    lattice_.find(t.level + 1, bcc_children(b)[child], t);
+    if (is_inherited(t)) return {};
+  }
+  const unsigned mask = lattice_.split_edges(t);
+  if (mask == 0) return Holder{t, 0};
+  return Holder{t, green_child_at(mask, bcc_barycentric_times_4(lattice_.barycentre(t), position(voxel, t.level)))};
+}
+
+// Good until the thread's next call for another leaf. The parts of one are asked for one after the other, so the last
+// answer is kept.
 const VoxelVotes::GreenVoxels& VoxelVotes::voxels_of_green_parts(TetRef leaf) const {
+  struct Answer {
+    std::uint64_t state = 0;
+    TetRef leaf;
+    unsigned mask = 0;
+    GreenVoxels parts;
+  };
+  thread_local Answer last;
   const LatticePoint b = lattice_.barycentre(leaf);
   const unsigned mask = lattice_.split_edges(leaf);
-  thread_local GreenVoxels parts;
+  GreenVoxels& parts = last.parts;
+  if (last.state == state_ && last.leaf == leaf && last.mask == mask) return parts;
+  last.state = state_, last.leaf = leaf, last.mask = mask;
   for (auto& part : parts) part.clear();
   for (const std::uint32_t v : voxels(leaf)) {
     const int child = green_child_at(mask, bcc_barycentric_times_4(b, position(v, leaf.level)));

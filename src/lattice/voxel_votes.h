@@ -43,7 +43,7 @@ class VoxelVotes {
   bool hands_label_down(TetRef t) const {
     const auto level = static_cast<std::size_t>(t.level);
     const Vote& v = votes_[level][t.slot];
-    return v.pure && (v.count >= kInheritAbove || begin_[level][t.slot] == kInherited);
+    return v.pure && (v.count >= kInheritAbove || is_inherited(t));
   }
 
   /// Tissues of the voxels nearest to the corners of a tetrahedron.
@@ -56,10 +56,18 @@ class VoxelVotes {
   /// until the thread's next call.
   std::span<const std::uint32_t> voxels_of_part(TetRef leaf, std::size_t part) const;
 
+  /// The leaf among whose voxels one is, and the part. Nothing for one inside a large pure tetrahedron or outside of the
+  /// lattice.
+  struct Holder {
+    TetRef leaf;
+    int part;
+  };
+  std::optional<Holder> holder_of(std::uint32_t voxel) const;
+
   /// Voxels of a tissue in a leaf (part 0 of one without split edges) or in one of its green parts.
   std::uint32_t voxels_of(TetRef leaf, std::size_t part, TissueId tissue) const;
 
-  // Fewer voxels than this do not vote: the interpolated image does.
+  /// Fewer voxels than this do not vote: the interpolated image does.
   static constexpr std::uint32_t kQuorum = 10;
 
  private:
@@ -70,6 +78,7 @@ class VoxelVotes {
   using GreenVoxels = std::array<std::vector<std::uint32_t>, 4>;
 
   void vote_in_roots();
+  bool is_inherited(TetRef t) const { return begin_[static_cast<std::size_t>(t.level)][t.slot] == kInherited; }
   const GreenVoxels& voxels_of_green_parts(TetRef leaf) const;
   void hand_down(TetRef parent);
   void hand_down_again(TetRef parent);
@@ -89,6 +98,7 @@ class VoxelVotes {
   std::vector<std::uint32_t> order_;               // all voxels of the crop, grouped by tetrahedron
   std::vector<std::vector<std::uint32_t>> begin_;  // by level and slot: first place in order_
   std::vector<std::vector<Vote>> votes_;           // by level and slot
+  std::uint64_t state_ = 0;                        // another one, unique, after each change
 };
 
 }  // namespace anatomesh
