@@ -198,20 +198,27 @@ bool LabelLattice::Impl::wants_refinement(TetRef leaf, const std::vector<Demand>
   if (votes_.hands_label_down(leaf)) return false;
   const auto voxels = votes_.voxels(leaf);
   const bool is_small = voxels.size() < VoxelVotes::kQuorum;
-  const TissueId first = votes_.vote(leaf).tissue;
-  bool mixed = false, holds_hidden = false;
-  int limit = demands[first].level_limit;
+  const Vote& vote = votes_.vote(leaf);
+  bool mixed = false, holds_hidden = false, may_go_deeper = false;
   const auto meet = [&](TissueId tissue) {
-    mixed = mixed || tissue != first;
-    limit = std::max(limit, demands[tissue].level_limit);
+    mixed = mixed || tissue != vote.tissue;
+    may_go_deeper = may_go_deeper || leaf.level < demands[tissue].level_limit;
   };
-  for (const std::uint32_t v : voxels) {
-    const Demand& demand = demands[image_.voxels[v]];
-    holds_hidden = holds_hidden || demand.absent || (demand.thin && is_small);
-    meet(image_.voxels[v]);
+  const auto meet_voxel_of = [&](TissueId tissue) {
+    holds_hidden = holds_hidden || demands[tissue].absent || (demands[tissue].thin && is_small);
+    meet(tissue);
+  };
+  meet(vote.tissue);
+  if (vote.pure && !voxels.empty()) {
+    meet_voxel_of(vote.tissue);
+  } else {
+    for (const std::uint32_t v : voxels) {
+      meet_voxel_of(image_.voxels[v]);
+      if (mixed && may_go_deeper) return true;
+    }
   }
   if (is_small) std::ranges::for_each(votes_.tissues_at_corners(leaf), meet);
-  return (mixed || holds_hidden) && leaf.level < limit;
+  return (mixed || holds_hidden) && may_go_deeper;
 }
 
 bool LabelLattice::Impl::refine_until_faithful(const Stage& stage) {

@@ -11,17 +11,18 @@ namespace anatomesh {
 void LabelledLeaves::collect(NewLabels new_labels) {
   const std::vector<LabelledLeaf> old = std::exchange(leaves_, {});
   Places places(static_cast<std::size_t>(lattice_.max_level()) + 1);
-  for (int level = 0; level <= lattice_.max_level(); ++level) {
-    if (!old.empty()) places[static_cast<std::size_t>(level)].assign(lattice_.slot_count(level), kNone);
-    for (std::uint32_t slot = 0; slot < lattice_.slot_count(level); ++slot) {
-      const TetRef t = {level, slot};
-      if (lattice_.is_leaf(t))
-        leaves_.push_back({.tet = t, .split_edges = static_cast<std::uint8_t>(lattice_.split_edges(t)), .votes = {}});
-    }
-  }
-  for (std::uint32_t i = 0; i < old.size(); ++i)
-    places[static_cast<std::size_t>(old[i].tet.level)][old[i].tet.slot] = i;
-  parallel_for(leaves_.size(), [&](std::size_t i) { label(leaves_[i], old, places, new_labels); });
+  for (int level = 0; !old.empty() && level <= lattice_.max_level(); ++level)
+    places[static_cast<std::size_t>(level)].assign(lattice_.slot_count(level), kNone);
+  parallel_for(old.size(), [&](std::size_t i) {
+    places[static_cast<std::size_t>(old[i].tet.level)][old[i].tet.slot] = static_cast<std::uint32_t>(i);
+  });
+  const std::vector<TetRef> tets = lattice_.leaves();
+  leaves_.resize(tets.size());
+  parallel_for(tets.size(), [&](std::size_t i) {
+    leaves_[i].tet = tets[i];
+    leaves_[i].split_edges = static_cast<std::uint8_t>(lattice_.split_edges(tets[i]));
+    label(leaves_[i], old, places, new_labels);
+  });
 }
 
 void LabelledLeaves::label(LabelledLeaf& leaf, const std::vector<LabelledLeaf>& old, const Places& places,

@@ -12,66 +12,88 @@
 namespace anatomesh {
 namespace {
 
-// The tetrahedra around a vertex, grouped into fans: those of one tissue reached through faces at the vertex.
+// The tetrahedra around a vertex, grouped into fans: those of one tissue reached through faces at the vertex. One a
+// thread is used again and again.
 class Star {
  public:
-  Star(const TetComplex& complex, VertexId v) : complex_(complex), tets_(complex.tets_of_vertex[v]), vertex_(v) {}
-
-  unsigned defect() {
-    const TissueId first = complex_.tissue(tets_[0]);
-    if (std::all_of(tets_.begin(), tets_.end(), [&](TetId t) { return complex_.tissue(t) == first; })) return 0;
+  unsigned defect(const TetComplex& complex, VertexId v) {
+    tets_ = complex.tets_of_vertex[v];
+    if (tets_.empty()) return 0;
+    const TissueId first = complex.tissue(tets_[0]);
+    if (std::all_of(tets_.begin(), tets_.end(), [&](TetId t) { return complex.tissue(t) == first; })) return 0;
+    own_.clear();
+    for (const TetId t : tets_) own_.push_back(complex.tissue(t));
+    list_faces(complex, v);
     group_into_fans();
-    std::sort(tissues_.begin(), tissues_.end());
-    tissues_.erase(std::unique(tissues_.begin(), tissues_.end()), tissues_.end());
-    unsigned defect = static_cast<unsigned>(fans_ - tissues_.size());
+    tissues_.clear();
+    unsigned fans = 0;
+    for (std::size_t i = 0; i < own_.size(); ++i) {
+      if (parent_[i] != i) continue;
+      ++fans;
+      if (std::ranges::find(tissues_, own_[i]) == tissues_.end()) tissues_.push_back(own_[i]);
+    }
+    unsigned defect = fans - static_cast<unsigned>(tissues_.size());
     if (tissues_.size() == 2) return 2 * defect;  // the rest of one is the other
+    fan_ = parent_;
     for (const TissueId tissue : tissues_) defect += pieces_without(tissue) - 1;
     return defect;
   }
 
  private:
-  // Calls visit(i, j) for tetrahedra i and j of the star that share a face at the vertex.
-  template <class Visit>
-  void for_each_face(const Visit& visit) const {
+  using Place = std::uint16_t;  // in the star
+
+  // The faces at the vertex between two tetrahedra of the star.
+  void list_faces(const TetComplex& complex, VertexId v) {
+    number_tets();
+    faces_.clear();
     for (std::size_t i = 0; i < tets_.size(); ++i) {
-      const auto& tet = complex_.mesh.tets[tets_[i]];
+      const auto& tet = complex.mesh.tets[tets_[i]];
+      const auto& behind = complex.behind[tets_[i]];
       for (std::size_t n = 0; n < 4; ++n) {
-        const TetId other = complex_.behind[tets_[i]][n];
-        if (tet[n] == vertex_ || other >= tets_[i]) continue;
-        visit(i, static_cast<std::size_t>(std::lower_bound(tets_.begin(), tets_.end(), other) - tets_.begin()));
+        if (tet[n] != v && behind[n] < tets_[i]) faces_.emplace_back(static_cast<Place>(i), place_of(behind[n]));
       }
     }
   }
 
+  // A small hash table: tetrahedra that are numbered one after the other go to places one after the other.
+  void number_tets() {
+    std::size_t size = 64;
+    while (size < 2 * tets_.size()) size *= 2;
+    table_.assign(size, kNowhere);
+    for (std::size_t i = 0; i < tets_.size(); ++i) {
+      std::size_t at = home_of(tets_[i]);
+      while (table_[at] != kNowhere) at = (at + 1) & (table_.size() - 1);
+      table_[at] = static_cast<Place>(i);
+    }
+  }
+  std::size_t home_of(TetId t) const { return (t ^ t >> 7u ^ t >> 15u) & (table_.size() - 1); }
+  Place place_of(TetId t) const {
+    std::size_t at = home_of(t);
+    while (tets_[table_[at]] != t) at = (at + 1) & (table_.size() - 1);
+    return table_[at];
+  }
+
   void group_into_fans() {
     parent_.resize(tets_.size());
-    std::iota(parent_.begin(), parent_.end(), std::uint16_t{0});
+    std::iota(parent_.begin(), parent_.end(), Place{0});
     rims_.clear();
-    for_each_face([&](std::size_t i, std::size_t j) {
-      if (complex_.tissue(tets_[i]) == complex_.tissue(tets_[j])) {
+    for (const auto& [i, j] : faces_) {
+      if (own_[i] == own_[j]) {
         join(i, j);
       } else {
-        rims_.emplace_back(static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(j));
+        rims_.emplace_back(i, j);
       }
-    });
-    tissues_.clear();
-    fans_ = 0;
-    for (std::size_t i = 0; i < tets_.size(); ++i) {
-      if (parent_[i] != i) continue;
-      ++fans_;
-      tissues_.push_back(complex_.tissue(tets_[i]));
     }
   }
 
   // Pieces of the star without the fans of a tissue.
   unsigned pieces_without(TissueId tissue) {
-    const std::vector<std::uint16_t> fans = parent_;
+    parent_ = fan_;
     unsigned pieces = 0;
-    for (std::size_t i = 0; i < tets_.size(); ++i) pieces += fans[i] == i && complex_.tissue(tets_[i]) != tissue;
+    for (std::size_t i = 0; i < own_.size(); ++i) pieces += fan_[i] == i && own_[i] != tissue;
     for (const auto& [i, j] : rims_) {
-      if (complex_.tissue(tets_[i]) != tissue && complex_.tissue(tets_[j]) != tissue) pieces -= join(i, j);
+      if (own_[i] != tissue && own_[j] != tissue) pieces -= join(i, j);
     }
-    parent_ = fans;
     return pieces;
   }
 
@@ -82,17 +104,19 @@ class Star {
   bool join(std::size_t i, std::size_t j) {
     i = root(i);
     j = root(j);
-    parent_[std::max(i, j)] = static_cast<std::uint16_t>(std::min(i, j));
+    parent_[std::max(i, j)] = static_cast<Place>(std::min(i, j));
     return i != j;
   }
 
-  const TetComplex& complex_;
+  static constexpr Place kNowhere = 0xffff;
+
   std::span<const TetId> tets_;
-  VertexId vertex_;
-  std::size_t fans_ = 0;
-  std::vector<TissueId> tissues_;                              // around the vertex
-  std::vector<std::uint16_t> parent_;                          // union-find over the star
-  std::vector<std::pair<std::uint16_t, std::uint16_t>> rims_;  // faces between two tissues
+  std::vector<TissueId> own_;                  // of the tetrahedra
+  std::vector<TissueId> tissues_;              // each once
+  std::vector<Place> table_;                   // places of tetrahedra
+  std::vector<Place> parent_, fan_;            // union-find over the star
+  std::vector<std::pair<Place, Place>> faces_;  // between two tetrahedra
+  std::vector<std::pair<Place, Place>> rims_;   // those between two tissues
 };
 
 unsigned defect_around(const TetComplex& complex, TetId t) {
@@ -305,7 +329,10 @@ class LabelMender {
 
 }  // namespace
 
-unsigned star_defect(const TetComplex& complex, VertexId v) { return Star(complex, v).defect(); }
+unsigned star_defect(const TetComplex& complex, VertexId v) {
+  thread_local Star star;
+  return star.defect(complex, v);
+}
 
 std::vector<VertexId> singular_among(const TetComplex& complex, std::vector<VertexId> vertices) {
   std::sort(vertices.begin(), vertices.end());

@@ -1,7 +1,11 @@
 #include "lattice/red_green.h"
 
+#include <algorithm>
 #include <bit>
 #include <cassert>
+#include <numeric>
+
+#include "base/parallel.h"
 
 namespace anatomesh {
 namespace {
@@ -11,7 +15,7 @@ constexpr std::array<unsigned, 4> kFaceEdges = {0b110010, 0b001110, 0b101001, 0b
 // Pairs of opposite edges, as bits.
 constexpr std::array<unsigned, 3> kOppositeEdges = {0b000011, 0b100100, 0b011000};
 
-std::uint8_t midpoint_node(std::size_t i, std::size_t j) {
+constexpr std::uint8_t midpoint_node(std::size_t i, std::size_t j) {
   for (std::size_t e = 0; e < 6; ++e) {
     const auto a = static_cast<std::size_t>(kTetEdges[e][0]), b = static_cast<std::size_t>(kTetEdges[e][1]);
     if ((a == i && b == j) || (a == j && b == i)) return static_cast<std::uint8_t>(4 + e);
@@ -19,7 +23,7 @@ std::uint8_t midpoint_node(std::size_t i, std::size_t j) {
   return 0;
 }
 
-std::array<std::size_t, 3> face_vertices(std::size_t opposite) {
+constexpr std::array<std::size_t, 3> face_vertices(std::size_t opposite) {
   std::array<std::size_t, 3> f{};
   std::size_t n = 0;
   for (std::size_t v = 0; v < 4; ++v) {
@@ -29,8 +33,8 @@ std::array<std::size_t, 3> face_vertices(std::size_t opposite) {
 }
 
 // Child 0 keeps the first end of every split edge; each split edge doubles the children.
-GreenSplit split_edges_in_two(unsigned mask) {
-  GreenSplit split;
+constexpr GreenSplit split_edges_in_two(unsigned mask) {
+  GreenSplit split{};
   split.tets[0] = {0, 1, 2, 3};
   split.count = 1;
   for (std::size_t e = 0; e < 6; ++e) {
@@ -48,8 +52,8 @@ GreenSplit split_edges_in_two(unsigned mask) {
 }
 
 // Three children at the corners of the split face, then the one on its middle triangle.
-GreenSplit split_face_in_four(std::size_t opposite) {
-  GreenSplit split;
+constexpr GreenSplit split_face_in_four(std::size_t opposite) {
+  GreenSplit split{};
   split.count = 4;
   const auto f = face_vertices(opposite);
   split.tets[3] = {0, 1, 2, 3};
@@ -64,7 +68,7 @@ GreenSplit split_face_in_four(std::size_t opposite) {
 }
 
 // Vertex opposite to the face whose three edges are split, or 4.
-std::size_t split_face(unsigned mask) {
+constexpr std::size_t split_face(unsigned mask) {
   for (std::size_t v = 0; v < 4; ++v) {
     if (kFaceEdges[v] == mask) return v;
   }
@@ -80,18 +84,7 @@ int third_edge_of_face(unsigned mask) {
   return -1;
 }
 
-std::array<GreenSplit, 64> make_green_table() {
-  std::array<GreenSplit, 64> table;
-  for (unsigned mask = 0; mask < 64; ++mask) {
-    if (!is_green_pattern(mask)) continue;
-    table[mask] = split_face(mask) < 4 ? split_face_in_four(split_face(mask)) : split_edges_in_two(mask);
-  }
-  return table;
-}
-
-}  // namespace
-
-bool is_green_pattern(unsigned mask) {
+constexpr bool can_be_green(unsigned mask) {
   if (std::popcount(mask) < 2) return true;
   for (const unsigned pair : kOppositeEdges) {
     if (mask == pair) return true;
@@ -99,10 +92,18 @@ bool is_green_pattern(unsigned mask) {
   return split_face(mask) < 4;
 }
 
-const GreenSplit& green_split(unsigned mask) {
-  static const std::array<GreenSplit, 64> table = make_green_table();
-  return table[mask];
+constexpr std::array<GreenSplit, 64> make_green_table() {
+  std::array<GreenSplit, 64> table{};
+  for (unsigned mask = 0; mask < 64; ++mask) {
+    if (!can_be_green(mask)) continue;
+    table[mask] = split_face(mask) < 4 ? split_face_in_four(split_face(mask)) : split_edges_in_two(mask);
+  }
+  return table;
 }
+
+}  // namespace
+
+constexpr std::array<GreenSplit, 64> kGreenSplits = make_green_table();
 
 int green_child_at(unsigned mask, const std::array<double, 4>& l) {
   if (const std::size_t opposite = split_face(mask); opposite < 4) {
@@ -168,6 +169,31 @@ std::vector<TetRef> RedGreenLattice::tets_of_level(int level) const {
     if (exists({level, slot})) tets.push_back({level, slot});
   }
   return tets;
+}
+
+std::vector<TetRef> RedGreenLattice::leaves() const {
+  constexpr std::size_t kGrain = 1 << 16;
+  std::vector<std::size_t> first_block = {0};  // by level
+  for (const Level& level : levels_) first_block.push_back(first_block.back() + (level.state.size() + kGrain - 1) / kGrain);
+  const auto for_each_leaf = [&](std::size_t block, auto&& visit) {
+    const auto after = std::ranges::upper_bound(first_block, block);
+    const auto level = static_cast<std::size_t>(after - first_block.begin() - 1);
+    const std::size_t begin = (block - first_block[level]) * kGrain;
+    const std::size_t end = std::min(begin + kGrain, levels_[level].state.size());
+    for (std::size_t slot = begin; slot < end; ++slot) {
+      const TetRef t = {static_cast<int>(level), static_cast<std::uint32_t>(slot)};
+      if (is_leaf(t)) visit(t);
+    }
+  };
+  std::vector<std::size_t> next(first_block.back() + 1, 0);
+  parallel_for(
+      first_block.back(), [&](std::size_t block) { for_each_leaf(block, [&](TetRef) { ++next[block + 1]; }); }, 1);
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  std::vector<TetRef> leaves(next.back());
+  parallel_for(
+      first_block.back(), [&](std::size_t block) { for_each_leaf(block, [&](TetRef t) { leaves[next[block]++] = t; }); },
+      1);
+  return leaves;
 }
 
 // The root tetrahedron above a barycentre starts in a cube of the lattice.

@@ -50,6 +50,9 @@ class RedGreenLattice {
   /// must follow. Returns all that were refined, parents before their children.
   std::vector<TetRef> refine(const std::vector<TetRef>& marked);
 
+  /// All leaves, by level and slot.
+  std::vector<TetRef> leaves() const;
+
   /// Tets that exist at a level, in the order of their making.
   std::vector<TetRef> tets_of_level(int level) const;
 
@@ -79,17 +82,18 @@ class RedGreenLattice {
   std::vector<TetRef> pending_;
 };
 
-/// Whether a leaf with these split edges can be made green (or left as it is): none, one, two opposite
-/// ones, or the three of a face.
-bool is_green_pattern(unsigned split_edges);
-
 /// The tetrahedra that a leaf with a green pattern falls into. Nodes 0 .. 3 are its vertices, 4 .. 9 the
 /// midpoints of its edges. Children keep their parent's orientation.
 struct GreenSplit {
   std::array<std::array<std::uint8_t, 4>, 4> tets;
   int count = 0;
 };
-const GreenSplit& green_split(unsigned split_edges);
+extern const std::array<GreenSplit, 64> kGreenSplits;  ///< by split edges; none of patterns that are not green
+inline const GreenSplit& green_split(unsigned split_edges) { return kGreenSplits[split_edges]; }
+
+/// Whether a leaf with these split edges can be made green (or left as it is): none, one, two opposite
+/// ones, or the three of a face.
+inline bool is_green_pattern(unsigned split_edges) { return kGreenSplits[split_edges].count > 0; }
 
 /// Which child of green_split(split_edges) holds a point with these barycentric coordinates (of any common
 /// scale). Every point belongs to exactly one.

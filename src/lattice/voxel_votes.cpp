@@ -56,6 +56,17 @@ std::uint64_t new_state() {
   return ++states;
 }
 
+// As std::floor and std::lround do, in range and without a call.
+int floor_of(double x) {
+  const int whole = static_cast<int>(x);
+  return whole - (x < whole);
+}
+int nearest_to(double x) {
+  const int whole = static_cast<int>(x);
+  const double rest = x - whole;
+  return whole + (rest >= 0.5) - (rest <= -0.5);
+}
+
 Vec3 blend(const std::array<Vec3, 4>& corners, const std::array<double, 4>& weight) {
   return weight[0] * corners[0] + weight[1] * corners[1] + weight[2] * corners[2] + weight[3] * corners[3];
 }
@@ -88,6 +99,41 @@ Vec3 VoxelVotes::position(std::uint32_t voxel, int level) const {
   return {scale * position_[0][voxel - row * nx], scale * position_[1][row - layer * ny], scale * position_[2][layer]};
 }
 
+// The tissue of most voxels, and of how many.
+std::pair<TissueId, std::uint32_t> VoxelVotes::most_frequent(std::span<const std::uint32_t> voxels) const {
+  if (voxels.empty()) return {0, 0};
+  const TissueId first = image_.voxels[voxels[0]];
+  std::size_t same = 1;
+  while (same < voxels.size() && image_.voxels[voxels[same]] == first) ++same;
+  if (same == voxels.size()) return {first, static_cast<std::uint32_t>(same)};
+  Ballot& ballot = thread_ballot();
+  ballot.add(first, static_cast<double>(same));
+  for (const std::uint32_t v : voxels.subspan(same)) ballot.add(image_.voxels[v], 1);
+  const auto [tissue, votes] = ballot.winner();
+  return {tissue, static_cast<std::uint32_t>(votes)};
+}
+
+// corners(): those of the tetrahedron; only asked for where voxels are few.
+template <class Corners>
+Vote VoxelVotes::count_votes(std::span<const std::uint32_t> voxels, const Corners& corners) const {
+  const auto [tissue, votes] = most_frequent(voxels);
+  Vote result;
+  result.count = static_cast<std::uint32_t>(voxels.size());
+  const bool unanimous = votes == result.count && !voxels.empty();
+  result.tissue = tissue;
+  result.hits = votes;
+  if (result.count < kQuorum) {
+    const TissueId chosen = interpolated_tissue(corners());
+    if (chosen != tissue || voxels.empty()) {
+      result.tissue = chosen;
+      result.hits = 0;
+      for (const std::uint32_t v : voxels) result.hits += image_.voxels[v] == chosen;
+    }
+  }
+  result.pure = voxels.empty() || (unanimous && result.tissue == tissue);
+  return result;
+}
+
 void VoxelVotes::vote_in_roots() {
   RootVoxels roots = sort_into_roots(position_, lattice_.root_cells());
   order_ = std::move(roots.order);
@@ -97,7 +143,8 @@ void VoxelVotes::vote_in_roots() {
       votes_[0].size(),
       [&](std::size_t s) {
         const std::uint32_t first = begin_[0][s], count = begin_[0][s + 1] - first;
-        votes_[0][s] = count_votes({&order_[0] + first, count}, corners_in_voxels({0, static_cast<std::uint32_t>(s)}));
+        votes_[0][s] = count_votes({&order_[0] + first, count},
+                                   [&] { return corners_in_voxels({0, static_cast<std::uint32_t>(s)}); });
       },
       64);
 }
@@ -141,7 +188,7 @@ void VoxelVotes::hand_down(TetRef parent) {
     std::copy(parts[c].begin(), parts[c].end(), &order_[0] + next);
     begin_[level + 1][children[c].slot] = next;
     votes_[level + 1][children[c].slot] =
-        count_votes({&order_[0] + next, parts[c].size()}, corners_in_voxels(children[c]));
+        count_votes({&order_[0] + next, parts[c].size()}, [&] { return corners_in_voxels(children[c]); });
     next += static_cast<std::uint32_t>(parts[c].size());
   }
 }
@@ -240,7 +287,7 @@ std::array<Vote, 4> VoxelVotes::green_votes(TetRef leaf) const {
                          : 0.5 * (corners[static_cast<std::size_t>(kTetEdges[node - 4][0])] +
                                   corners[static_cast<std::size_t>(kTetEdges[node - 4][1])]);
     }
-    votes[c] = count_votes(parts[c], part);
+    votes[c] = count_votes(parts[c], [&] { return part; });
   }
   return votes;
 }
@@ -259,44 +306,11 @@ std::array<Vec3, 4> VoxelVotes::corners_in_voxels(TetRef t) const {
   return corners;
 }
 
-// The tissue of most voxels, and of how many.
-std::pair<TissueId, std::uint32_t> VoxelVotes::most_frequent(std::span<const std::uint32_t> voxels) const {
-  if (voxels.empty()) return {0, 0};
-  const TissueId first = image_.voxels[voxels[0]];
-  std::size_t same = 1;
-  while (same < voxels.size() && image_.voxels[voxels[same]] == first) ++same;
-  if (same == voxels.size()) return {first, static_cast<std::uint32_t>(same)};
-  Ballot& ballot = thread_ballot();
-  ballot.add(first, static_cast<double>(same));
-  for (const std::uint32_t v : voxels.subspan(same)) ballot.add(image_.voxels[v], 1);
-  const auto [tissue, votes] = ballot.winner();
-  return {tissue, static_cast<std::uint32_t>(votes)};
-}
-
-Vote VoxelVotes::count_votes(std::span<const std::uint32_t> voxels, const std::array<Vec3, 4>& corners) const {
-  const auto [tissue, votes] = most_frequent(voxels);
-  Vote result;
-  result.count = static_cast<std::uint32_t>(voxels.size());
-  const bool unanimous = votes == result.count && !voxels.empty();
-  result.tissue = tissue;
-  result.hits = votes;
-  if (result.count < kQuorum) {
-    const TissueId chosen = interpolated_tissue(corners);
-    if (chosen != tissue || voxels.empty()) {
-      result.tissue = chosen;
-      result.hits = 0;
-      for (const std::uint32_t v : voxels) result.hits += image_.voxels[v] == chosen;
-    }
-  }
-  result.pure = voxels.empty() || (unanimous && result.tissue == tissue);
-  return result;
-}
-
 std::array<TissueId, 4> VoxelVotes::tissues_at_corners(TetRef t) const {
   std::array<TissueId, 4> tissues;
   const std::array<Vec3, 4> corners = corners_in_voxels(t);
   for (std::size_t n = 0; n < 4; ++n) {
-    const auto nearest = [&](std::size_t axis) { return static_cast<int>(std::lround(corners[n][axis])); };
+    const auto nearest = [&](std::size_t axis) { return nearest_to(corners[n][axis]); };
     tissues[n] = image_.at_or_background(nearest(0), nearest(1), nearest(2));
   }
   return tissues;
@@ -309,10 +323,12 @@ std::optional<TissueId> VoxelVotes::only_tissue(const std::array<int, 3>& low, c
     if (std::int64_t{high[a]} - low[a] >= kMost) return {};
   }
   const TissueId first = image_.at_or_background(low[0], low[1], low[2]);
+  const bool inside = image_.contains(low[0], low[1], low[2]) && image_.contains(high[0], high[1], high[2]);
   for (int k = low[2]; k <= high[2]; ++k) {
     for (int j = low[1]; j <= high[1]; ++j) {
+      const TissueId* row = inside ? &image_.voxels[image_.offset(low[0], j, k)] : nullptr;
       for (int i = low[0]; i <= high[0]; ++i) {
-        if (image_.at_or_background(i, j, k) != first) return {};
+        if ((inside ? row[i - low[0]] : image_.at_or_background(i, j, k)) != first) return {};
       }
     }
   }
@@ -333,7 +349,7 @@ TissueId VoxelVotes::interpolated_tissue(const std::array<Vec3, 4>& corners) con
   for (std::size_t n = 0; n < 5; ++n) {
     points[n] = blend(corners, kPoints[n]);
     for (std::size_t a = 0; a < 3; ++a) {
-      const int at = lows[n][a] = static_cast<int>(std::floor(points[n][a]));
+      const int at = lows[n][a] = floor_of(points[n][a]);
       low[a] = n == 0 ? at : std::min(low[a], at);
       high[a] = n == 0 ? at + 1 : std::max(high[a], at + 1);
     }

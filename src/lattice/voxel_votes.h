@@ -84,7 +84,8 @@ class VoxelVotes {
   void hand_down_again(TetRef parent);
   Vec3 position(std::uint32_t voxel, int level) const;
   std::pair<TissueId, std::uint32_t> most_frequent(std::span<const std::uint32_t> voxels) const;
-  Vote count_votes(std::span<const std::uint32_t> voxels, const std::array<Vec3, 4>& corners) const;
+  template <class Corners>
+  Vote count_votes(std::span<const std::uint32_t> voxels, const Corners& corners) const;
   std::optional<TissueId> only_tissue(const std::array<int, 3>& low, const std::array<int, 3>& high) const;
   TissueId interpolated_tissue(const std::array<Vec3, 4>& corners) const;
   std::array<Vec3, 4> corners_in_voxels(TetRef t) const;
