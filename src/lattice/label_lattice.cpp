@@ -100,7 +100,7 @@ class LabelLattice::Impl {
   std::vector<Fidelity> fidelity() const;
   std::vector<Demand> demands() const;
   bool is_too_large(TetRef leaf) const;
-  bool wants_refinement(TetRef leaf, const std::vector<Demand>& demands) const;
+  bool lies_on_boundary(TetRef leaf, const std::vector<Demand>& demands) const;
   template <class Visit>
   void visit_parts(const LabelledLeaf& leaf, const Visit& visit) const;
 
@@ -193,8 +193,7 @@ bool LabelLattice::Impl::is_too_large(TetRef leaf) const {
 // A leaf is refined when the boundary of a tissue that falls short passes between its voxels, or between the corners of
 // one with few voxels, or when it holds a voxel of a tissue that no tetrahedron has taken yet or that is too thin to
 // show between voxel centres.
-bool LabelLattice::Impl::wants_refinement(TetRef leaf, const std::vector<Demand>& demands) const {
-  if (is_too_large(leaf)) return true;
+bool LabelLattice::Impl::lies_on_boundary(TetRef leaf, const std::vector<Demand>& demands) const {
   if (votes_.hands_label_down(leaf)) return false;
   const auto voxels = votes_.voxels(leaf);
   const bool is_small = voxels.size() < VoxelVotes::kQuorum;
@@ -226,9 +225,12 @@ bool LabelLattice::Impl::refine_until_faithful(const Stage& stage) {
     leaves_.collect(NewLabels::vote);
     stage.check_cancelled();
     const std::vector<Demand> asked = demands();
+    const int deepest_asked = std::ranges::max(asked, {}, &Demand::level_limit).level_limit;
     std::vector<char> wanted(leaves_.list().size());
-    parallel_for(leaves_.list().size(),
-                 [&](std::size_t i) { wanted[i] = wants_refinement(leaves_.list()[i].tet, asked); });
+    parallel_for(leaves_.list().size(), [&](std::size_t i) {
+      const TetRef leaf = leaves_.list()[i].tet;
+      wanted[i] = is_too_large(leaf) || (leaf.level < deepest_asked && lies_on_boundary(leaf, asked));
+    });
     std::vector<TetRef> marked;
     for (std::size_t i = 0; i < leaves_.list().size(); ++i) {
       if (wanted[i]) marked.push_back(leaves_.list()[i].tet);

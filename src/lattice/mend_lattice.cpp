@@ -85,6 +85,7 @@ class LatticeMender {
   std::vector<LeafMesh::Origin> origins_;
   TetContents contents_;
   std::vector<Claim> claims_;
+  std::vector<TetId> fresh_;  // tetrahedra that the last mesh did not have
   std::size_t max_tets_ = 0;
   LatticePointMap core_;  // singular vertices before the last refinement, and the middles of the edges between them
 };
@@ -97,6 +98,10 @@ void LatticeMender::take_mesh(bool first) {
   pieces_ = find_pieces(complex_);
   contents_ = contents();
   claims_ = claims_from(taken.from);
+  fresh_.clear();
+  for (TetId t = 0; t < taken.from.size(); ++t) {
+    if (taken.from[t] == TetComplex::kNone) fresh_.push_back(t);
+  }
 }
 
 TetContents LatticeMender::contents() const {
@@ -165,9 +170,7 @@ std::vector<VertexId> LatticeMender::fresh_vertices(const std::vector<TetId>& ch
   const auto add = [&](TetId t) {
     vertices.insert(vertices.end(), complex_.mesh.tets[t].begin(), complex_.mesh.tets[t].end());
   };
-  for (TetId t = 0; t < origins_.size(); ++t) {
-    if (leaves_.list()[origins_[t].leaf].fresh) add(t);
-  }
+  for (const TetId t : fresh_) add(t);
   for (const TetId t : changed) add(t);
   return vertices;
 }

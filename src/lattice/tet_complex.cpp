@@ -1,13 +1,49 @@
 #include "lattice/tet_complex.h"
 
 #include <algorithm>
+#include <atomic>
+#include <numeric>
 #include <utility>
 
-#include "base/disjoint_sets.h"
 #include "base/parallel.h"
 
 namespace anatomesh {
 namespace {
+
+constexpr std::size_t kGrain = 4096;
+
+/// Union-find by many threads at once. Roots are the lowest of their sets, whatever the order.
+class SharedSets {
+ public:
+  explicit SharedSets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), TetId{0}); }
+
+  TetId root(TetId x) {
+    for (;;) {
+      const TetId up = at(x).load(std::memory_order_relaxed);
+      if (up == x) return x;
+      const TetId above = at(up).load(std::memory_order_relaxed);
+      if (above == up) return up;
+      at(x).store(above, std::memory_order_relaxed);  // any ancestor will do
+      x = above;
+    }
+  }
+  bool is_root(TetId x) const { return parent_[x] == x; }
+
+  void join(TetId a, TetId b) {
+    for (;;) {
+      a = root(a);
+      b = root(b);
+      if (a == b) return;
+      if (a > b) std::swap(a, b);
+      TetId expected = b;
+      if (at(b).compare_exchange_strong(expected, a, std::memory_order_relaxed)) return;
+    }
+  }
+
+ private:
+  std::atomic_ref<TetId> at(TetId x) { return std::atomic_ref(parent_[x]); }
+  std::vector<TetId> parent_;
+};
 
 /// A face at its lowest vertex that waits for the tetrahedron on its other side.
 struct OpenFace {
@@ -50,6 +86,40 @@ TetId find_behind(const TetComplex& complex, TetId t, std::size_t n) {
   return t;
 }
 
+// The lists of a mesh whose tetrahedron t is from[t] of one with the lists `before`; number: the other way round.
+VertexLists<TetId> renumbered(const VertexLists<TetId>& before, const TissueMesh& mesh, std::span<const TetId> from,
+                              std::span<const TetId> number) {
+  const auto is_kept = [&](TetId t) { return number[t] != TetComplex::kNone; };
+  VertexLists<TetId> lists;
+  lists.begin.assign(mesh.points_mm.size() + 1, 0);
+  parallel_for(before.size(), [&](std::size_t v) {
+    lists.begin[v + 1] = static_cast<std::uint32_t>(std::ranges::count_if(before[v], is_kept));
+  });
+  std::vector<TetId> added;
+  for (TetId t = 0; t < from.size(); ++t) {
+    if (from[t] == TetComplex::kNone) added.push_back(t);
+  }
+  for (const TetId t : added) {
+    for (const VertexId v : mesh.tets[t]) ++lists.begin[v + 1];
+  }
+  std::partial_sum(lists.begin.begin(), lists.begin.end(), lists.begin.begin());
+  lists.items.resize(lists.begin.back());
+  std::vector<std::uint32_t> next(lists.begin.begin(), lists.begin.end() - 1);
+  parallel_for(before.size(), [&](std::size_t v) {
+    for (const TetId t : before[v]) {
+      if (is_kept(t)) lists.items[next[v]++] = number[t];
+    }
+  });
+  for (const TetId t : added) {
+    for (const VertexId v : mesh.tets[t]) lists.items[next[v]++] = t;
+  }
+  parallel_for(lists.size(), [&](std::size_t v) {
+    const std::span<TetId> list(&lists.items[0] + lists.begin[v], &lists.items[0] + lists.begin[v + 1]);
+    if (!std::ranges::is_sorted(list)) std::ranges::sort(list);
+  });
+  return lists;
+}
+
 }  // namespace
 
 TetComplex make_complex(TissueMesh mesh) {
@@ -67,12 +137,12 @@ TetComplex make_complex(TissueMesh mesh) {
 TetComplex remake_complex(const TetComplex& before, TissueMesh mesh, std::span<const TetId> from) {
   TetComplex complex;
   complex.mesh = std::move(mesh);
-  complex.tets_of_vertex = tets_of_vertices(complex.mesh.points_mm.size(), complex.mesh.tets);
-  complex.behind.resize(complex.mesh.tets.size());
   std::vector<TetId> number(before.mesh.tets.size(), TetComplex::kNone);
   parallel_for(from.size(), [&](std::size_t t) {
     if (from[t] != TetComplex::kNone) number[from[t]] = static_cast<TetId>(t);
   });
+  complex.tets_of_vertex = renumbered(before.tets_of_vertex, complex.mesh, from, number);
+  complex.behind.resize(complex.mesh.tets.size());
   parallel_for(from.size(), [&](std::size_t i) {
     const auto t = static_cast<TetId>(i);
     for (std::size_t n = 0; n < 4; ++n) {
@@ -86,25 +156,38 @@ TetComplex remake_complex(const TetComplex& before, TissueMesh mesh, std::span<c
 
 Pieces find_pieces(const TetComplex& complex) {
   const auto& tissues = complex.mesh.tissues;
-  DisjointSets sets(tissues.size());
-  for (TetId t = 0; t < tissues.size(); ++t) {
-    if (tissues[t] == 0) continue;
+  SharedSets sets(tissues.size());
+  parallel_for(tissues.size(), [&](std::size_t t) {
+    if (tissues[t] == 0) return;
     for (const TetId other : complex.behind[t]) {
-      if (other < t && tissues[other] == tissues[t]) sets.join(t, other);
+      if (other < t && tissues[other] == tissues[t]) sets.join(static_cast<TetId>(t), other);
     }
-  }
+  });
   Pieces pieces;
   pieces.of_tet.assign(tissues.size(), Pieces::kNone);
   for (TetId t = 0; t < tissues.size(); ++t) {
-    if (tissues[t] == 0) continue;
-    if (sets.is_root(t)) {  // the lowest of its piece
-      pieces.of_tet[t] = static_cast<std::uint32_t>(pieces.list.size());
-      pieces.list.push_back({tissues[t], 0, t});
-    } else {
-      pieces.of_tet[t] = pieces.of_tet[sets.root(t)];
-    }
-    ++pieces.list[pieces.of_tet[t]].tets;
+    if (tissues[t] == 0 || !sets.is_root(t)) continue;  // the lowest of its piece
+    pieces.of_tet[t] = static_cast<std::uint32_t>(pieces.list.size());
+    pieces.list.push_back({tissues[t], 0, t});
   }
+  parallel_blocks(tissues.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    std::uint32_t piece = Pieces::kNone, count = 0;
+    const auto add_up = [&] {
+      if (count > 0) std::atomic_ref(pieces.list[piece].tets).fetch_add(count, std::memory_order_relaxed);
+    };
+    for (std::size_t t = begin; t < end; ++t) {
+      if (tissues[t] == 0) continue;
+      const TetId root = sets.root(static_cast<TetId>(t));
+      if (root != t) pieces.of_tet[t] = pieces.of_tet[root];
+      if (pieces.of_tet[t] != piece) {
+        add_up();
+        piece = pieces.of_tet[t];
+        count = 0;
+      }
+      ++count;
+    }
+    add_up();
+  });
   return pieces;
 }
 
