@@ -12,6 +12,7 @@
 #include "base/disjoint_sets.h"
 #include "base/parallel.h"
 #include "base/vec.h"
+#include "lattice/tet_map.h"
 
 namespace anatomesh {
 namespace {
@@ -120,6 +121,12 @@ class PieceMender {
   const TetContents& contents_;
   std::vector<Claim>& claims_;  // by tetrahedron, of open tissues
   RelabelPrice price_;
+  struct Known {
+    TetId from = 0;
+    bool reached = false;
+    double cost = -1;  // of a way through it
+  };
+  TetMap<Known> known_;       // to the search for a path
   std::vector<char> locked_;  // relabelled by a repair: others go around it
   PieceRepair repair_;
 
@@ -417,33 +424,35 @@ void PieceMender::join_piece(std::uint32_t piece, const std::vector<TetId>& tets
     bool operator>(const Step& o) const { return std::tie(cost, tet) > std::tie(o.cost, o.tet); }
   };
   std::priority_queue<Step, std::vector<Step>, std::greater<>> open;
-  std::unordered_map<TetId, TetId> came_from;
-  std::unordered_map<TetId, double> cost_of;
+  known_.clear();
   for (const TetId t : tets) {
     if (complex_.tissue(t) == tissue) open.push({0, t, t});  // another path may have taken it
   }
   TetId end = 0, last = 0;
   bool found = false;
-  while (!open.empty() && came_from.size() < kMaxVisited) {
+  std::size_t visited = 0;
+  while (!open.empty() && visited < kMaxVisited) {
     const Step step = open.top();
     open.pop();
-    if (!came_from.emplace(step.tet, step.from).second) continue;
+    Known& here = known_[step.tet];
+    if (here.reached) continue;
+    here.reached = true;
+    here.from = step.from;
+    ++visited;
     if (complex_.tissue(step.tet) == tissue && pieces_.of_tet[step.tet] != kNone &&
         joined.root(pieces_.of_tet[step.tet]) != joined.root(piece)) {
       end = step.from, last = step.tet, found = true;
       break;
     }
     for (const TetId other : complex_.behind[step.tet]) {
-      if (came_from.count(other)) continue;
       if (complex_.tissue(other) == tissue) {
-        if (main_of(other) == component) open.push({step.cost, other, step.tet});
+        if (main_of(other) == component && !known_[other].reached) open.push({step.cost, other, step.tet});
         continue;
       }
-      if (touches_other_component(other, component)) continue;
-      const auto [known, is_new] = cost_of.try_emplace(other);
-      if (is_new) known->second = path_cost(other, tissue);
-      const double cost = known->second;
-      if (step.cost + cost < kReach) open.push({step.cost + cost, other, step.tet});
+      Known& there = known_[other];
+      if (there.reached) continue;
+      if (there.cost < 0) there.cost = touches_other_component(other, component) ? kReach : path_cost(other, tissue);
+      if (step.cost + there.cost < kReach) open.push({step.cost + there.cost, other, step.tet});
     }
   }
   if (!found) {
@@ -455,7 +464,7 @@ void PieceMender::join_piece(std::uint32_t piece, const std::vector<TetId>& tets
     return;
   }
   std::vector<TetId> path;
-  for (TetId t = end; complex_.tissue(t) != tissue; t = came_from.at(t)) path.push_back(t);
+  for (TetId t = end; complex_.tissue(t) != tissue; t = known_[t].from) path.push_back(t);
   bool too_large = false;
   for (const TetId t : path) {
     const float size = contents_.fixed[t] ? 0 : kPathSize;
