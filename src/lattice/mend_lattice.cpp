@@ -1,6 +1,7 @@
 #include "lattice/mend_lattice.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -59,6 +60,7 @@ class LatticeMender {
 
  private:
   void take_mesh(bool first);
+  std::vector<std::array<float, 5>> part_sizes() const;
   TetContents contents() const;
   std::vector<Claim> claims_from(const std::vector<TetId>& from) const;
   void mend_pieces_here(std::vector<TetId>& changed, std::vector<TetId>& marked);
@@ -104,6 +106,19 @@ void LatticeMender::take_mesh(bool first) {
   }
 }
 
+// Volumes of tetrahedra, in voxels: by level of the leaf and number of its parts.
+std::vector<std::array<float, 5>> LatticeMender::part_sizes() const {
+  const double voxel_mm3 = image_.spacing_mm.x * image_.spacing_mm.y * image_.spacing_mm.z;
+  std::vector<std::array<float, 5>> sizes(static_cast<std::size_t>(lattice_.max_level()) + 1);
+  for (int level = 0; level <= lattice_.max_level(); ++level) {
+    const double h = std::ldexp(4 * plan_.unit_mm, -level);
+    for (std::size_t parts = 1; parts < 5; ++parts)
+      sizes[static_cast<std::size_t>(level)][parts] =
+          static_cast<float>(h * h * h / 12 / static_cast<int>(parts) / voxel_mm3);
+  }
+  return sizes;
+}
+
 TetContents LatticeMender::contents() const {
   TetContents contents;
   contents.voxels = [this](TetId t) {
@@ -120,11 +135,10 @@ TetContents LatticeMender::contents() const {
   contents.fixed.resize(count);
   contents.may_refine.resize(count);
   contents.decided.resize(count);
-  const double voxel_mm3 = image_.spacing_mm.x * image_.spacing_mm.y * image_.spacing_mm.z;
+  const std::vector<std::array<float, 5>> sizes = part_sizes();
   parallel_for(count, [&](std::size_t t) {
     const LabelledLeaf& leaf = leaves_.list()[origins_[t].leaf];
-    const double h = std::ldexp(4 * plan_.unit_mm, -leaf.tet.level);
-    contents.sizes[t] = static_cast<float>(h * h * h / 12 / leaf.split().count / voxel_mm3);
+    contents.sizes[t] = sizes[static_cast<std::size_t>(leaf.tet.level)][static_cast<std::size_t>(leaf.split().count)];
     contents.fixed[t] = votes_.hands_label_down(leaf.tet);
     contents.may_refine[t] = leaf.tet.level < plan_.piece_level;
     contents.decided[t] = leaf.decided;

@@ -334,9 +334,29 @@ unsigned star_defect(const TetComplex& complex, VertexId v) {
   return star.defect(complex, v);
 }
 
+namespace {
+
+// Ascending, each once.
+void sort_once(std::vector<VertexId>& vertices, std::size_t vertex_count) {
+  constexpr std::size_t kFew = 16;
+  if (vertices.size() < vertex_count / kFew) {
+    std::ranges::sort(vertices);
+    const auto repeated = std::ranges::unique(vertices);
+    vertices.erase(repeated.begin(), repeated.end());
+    return;
+  }
+  std::vector<char> listed(vertex_count, 0);
+  for (const VertexId v : vertices) listed[v] = 1;
+  vertices.clear();
+  for (VertexId v = 0; v < vertex_count; ++v) {
+    if (listed[v]) vertices.push_back(v);
+  }
+}
+
+}  // namespace
+
 std::vector<VertexId> singular_among(const TetComplex& complex, std::vector<VertexId> vertices) {
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  sort_once(vertices, complex.mesh.points_mm.size());
   std::vector<char> singular(vertices.size());
   parallel_for(vertices.size(), [&](std::size_t i) { singular[i] = star_defect(complex, vertices[i]) > 0; });
   std::size_t kept = 0;

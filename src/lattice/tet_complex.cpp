@@ -142,13 +142,19 @@ TetComplex remake_complex(const TetComplex& before, TissueMesh mesh, std::span<c
     if (from[t] != TetComplex::kNone) number[from[t]] = static_cast<TetId>(t);
   });
   complex.tets_of_vertex = renumbered(before.tets_of_vertex, complex.mesh, from, number);
+  std::vector<char> at_new(complex.mesh.points_mm.size(), 0);  // vertices of tetrahedra that are new
+  for (TetId t = 0; t < from.size(); ++t) {
+    if (from[t] != TetComplex::kNone) continue;
+    for (const VertexId v : complex.mesh.tets[t]) at_new[v] = 1;
+  }
   complex.behind.resize(complex.mesh.tets.size());
   parallel_for(from.size(), [&](std::size_t i) {
     const auto t = static_cast<TetId>(i);
+    const bool is_new = from[t] == TetComplex::kNone;
     for (std::size_t n = 0; n < 4; ++n) {
-      const bool had_other = from[t] != TetComplex::kNone && before.behind[from[t]][n] != from[t];
-      const TetId other = had_other ? number[before.behind[from[t]][n]] : TetComplex::kNone;
-      complex.behind[t][n] = other == TetComplex::kNone ? find_behind(complex, t, n) : other;
+      const TetId other = is_new ? TetComplex::kNone : number[before.behind[from[t]][n]];
+      const bool is_known = other != TetComplex::kNone && (other != t || !at_new[complex.mesh.tets[t][(n + 1) % 4]]);
+      complex.behind[t][n] = is_known ? other : find_behind(complex, t, n);
     }
   });
   return complex;
