@@ -41,6 +41,16 @@ TissueId majority_behind_faces(const TissueMesh& mesh, const std::array<TetId, 4
   return most >= 3 || cut_off ? best : own;
 }
 
+// By vertex: whether tetrahedra of two tissues meet there.
+std::vector<char> find_interface(const VertexLists<TetId>& tets_of_vertex, const std::vector<TissueId>& tissues) {
+  std::vector<char> on_interface(tets_of_vertex.size());
+  parallel_for(on_interface.size(), [&](std::size_t v) {
+    const auto tets = tets_of_vertex[v];
+    on_interface[v] = std::ranges::any_of(tets, [&](TetId t) { return tissues[t] != tissues[tets[0]]; });
+  });
+  return on_interface;
+}
+
 }  // namespace
 
 void clean_labels(TissueMesh& mesh, const std::function<bool(TetId)>& may_change) {
@@ -51,11 +61,10 @@ void clean_labels(TissueMesh& mesh, const std::function<bool(TetId)>& may_change
     ++tets_of_tissue[tissue];
   }
   for (int round = 0; round < kRounds; ++round) {
-    const auto tissues_of_vertex = tissues_of_vertices(tets_of_vertex, mesh.tissues);
+    const std::vector<char> on_interface = find_interface(tets_of_vertex, mesh.tissues);
     std::vector<char> candidate(mesh.tets.size());
     parallel_for(mesh.tets.size(), [&](std::size_t t) {
-      candidate[t] = std::all_of(mesh.tets[t].begin(), mesh.tets[t].end(),
-                                 [&](VertexId v) { return tissues_of_vertex[v].size() > 1; }) &&
+      candidate[t] = std::ranges::all_of(mesh.tets[t], [&](VertexId v) { return on_interface[v]; }) &&
                      may_change(static_cast<TetId>(t));
     });
     bool changed = false;

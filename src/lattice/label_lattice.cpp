@@ -67,6 +67,10 @@ struct Demand {
   int level_limit = 0;  // its boundary is refined in tetrahedra above this level; 0: not at all
   bool absent = false;  // no tetrahedron has taken it yet
   bool thin = false;    // the volume of its tetrahedra is far from that of its voxels: it lies between their centres
+
+  bool exceeds(const Demand& o) const {
+    return level_limit > o.level_limit || (absent && !o.absent) || (thin && !o.thin);
+  }
 };
 
 }  // namespace
@@ -89,6 +93,7 @@ class LabelLattice::Impl {
   std::optional<LabelledLattice> refine(const FidelityGap& gap, const Stage& stage);
 
  private:
+  std::vector<TetRef> leaves_wanted(const std::vector<Demand>& asked) const;
   /// Returns whether anything was refined.
   bool refine_until_faithful(const Stage& stage);
   std::vector<TetRef> leaves_to_mend(const FidelityGap& gap) const;
@@ -107,6 +112,7 @@ class LabelLattice::Impl {
   const TissueImage& image_;
   const LatticePlan& plan_;
   std::vector<double> target_;  // fidelity to reach before the removal of label noise, by tissue
+  std::vector<Demand> asked_;   // by tissue, in the round before; empty in the first
   Placement place_;
   int deepest_;  // level for tissues and pieces; surfaces may be mended below it
   RedGreenLattice lattice_;
@@ -220,21 +226,34 @@ bool LabelLattice::Impl::lies_on_boundary(TetRef leaf, const std::vector<Demand>
   return (mixed || holds_hidden) && may_go_deeper;
 }
 
+// Leaves that were passed over before are not looked at again while no tissue asks for more.
+std::vector<TetRef> LabelLattice::Impl::leaves_wanted(const std::vector<Demand>& asked) const {
+  const bool any_asks_for_more =
+      asked_.empty() || !std::ranges::equal(asked, asked_, [](const Demand& now, const Demand& before) {
+        return !now.exceeds(before);
+      });
+  const int deepest_asked = std::ranges::max(asked, {}, &Demand::level_limit).level_limit;
+  std::vector<char> wanted(leaves_.list().size());
+  parallel_for(leaves_.list().size(), [&](std::size_t i) {
+    const LabelledLeaf& leaf = leaves_.list()[i];
+    if (!leaf.fresh && !any_asks_for_more) return;
+    wanted[i] = is_too_large(leaf.tet) || (leaf.tet.level < deepest_asked && lies_on_boundary(leaf.tet, asked));
+  });
+  std::vector<TetRef> marked;
+  for (std::size_t i = 0; i < leaves_.list().size(); ++i) {
+    if (wanted[i]) marked.push_back(leaves_.list()[i].tet);
+  }
+  return marked;
+}
+
 bool LabelLattice::Impl::refine_until_faithful(const Stage& stage) {
+  asked_.clear();
   for (int round = 0;; ++round) {
     leaves_.collect(NewLabels::vote);
     stage.check_cancelled();
-    const std::vector<Demand> asked = demands();
-    const int deepest_asked = std::ranges::max(asked, {}, &Demand::level_limit).level_limit;
-    std::vector<char> wanted(leaves_.list().size());
-    parallel_for(leaves_.list().size(), [&](std::size_t i) {
-      const TetRef leaf = leaves_.list()[i].tet;
-      wanted[i] = is_too_large(leaf) || (leaf.level < deepest_asked && lies_on_boundary(leaf, asked));
-    });
-    std::vector<TetRef> marked;
-    for (std::size_t i = 0; i < leaves_.list().size(); ++i) {
-      if (wanted[i]) marked.push_back(leaves_.list()[i].tet);
-    }
+    std::vector<Demand> asked = demands();
+    const std::vector<TetRef> marked = leaves_wanted(asked);
+    asked_ = std::move(asked);
     if (marked.empty()) return round > 0;
     stage.check_cancelled();
     votes_.descend(lattice_.refine(marked));

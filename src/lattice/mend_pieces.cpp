@@ -6,7 +6,6 @@
 #include <numeric>
 #include <queue>
 #include <tuple>
-#include <unordered_map>
 #include <utility>
 
 #include "base/disjoint_sets.h"
@@ -126,7 +125,8 @@ class PieceMender {
     bool reached = false;
     double cost = -1;  // of a way through it
   };
-  TetMap<Known> known_;       // to the search for a path
+  TetMap<Known> known_;                // to the search for a path
+  std::vector<std::uint32_t> region_;  // by tetrahedron of a piece that is cut: the component it goes to
   std::vector<char> locked_;  // relabelled by a repair: others go around it
   PieceRepair repair_;
 
@@ -323,27 +323,29 @@ void PieceMender::cut_shared_pieces() {
 // Grows the components that are at home in a piece until they meet, and cuts there.
 void PieceMender::cut(const std::vector<TetId>& tets) {
   const std::uint32_t piece = pieces_.of_tet[tets.front()];
-  std::unordered_map<TetId, std::uint32_t> region;
+  region_.resize(complex_.mesh.tets.size(), kNone);
   std::vector<TetId> front;
   for (const TetId t : tets) {
     const std::uint32_t c = claims_[t].component;
     if (c == kNone || home_[c] != piece || claims_[t].voxels == 0) continue;
-    region[t] = c;
+    region_[t] = c;
     front.push_back(t);
   }
   for (std::size_t i = 0; i < front.size(); ++i) {
-    const std::uint32_t c = region[front[i]];
     for (const TetId other : complex_.behind[front[i]]) {
-      if (pieces_.of_tet[other] == piece && region.emplace(other, c).second) front.push_back(other);
+      if (pieces_.of_tet[other] != piece || region_[other] != kNone) continue;
+      region_[other] = region_[front[i]];
+      front.push_back(other);
     }
   }
-  std::sort(front.begin(), front.end());
-  for (const TetId t : front) {
+  for (const TetId t : tets) {
+    if (region_[t] == kNone) continue;
     for (const TetId other : complex_.behind[t]) {
-      if (other < t && pieces_.of_tet[other] == piece && pieces_.of_tet[t] == piece && region[other] != region[t])
+      if (other < t && pieces_.of_tet[other] == piece && pieces_.of_tet[t] == piece && region_[other] != region_[t])
         cut_face(other, t);
     }
   }
+  for (const TetId t : front) region_[t] = kNone;
 }
 
 // One of two tetrahedra that join two components gets another tissue: the one with fewer voxels of its own.

@@ -119,12 +119,6 @@ class Star {
   std::vector<std::pair<Place, Place>> rims_;   // those between two tissues
 };
 
-unsigned defect_around(const TetComplex& complex, TetId t) {
-  unsigned sum = 0;
-  for (const VertexId v : complex.mesh.tets[t]) sum += star_defect(complex, v);
-  return sum;
-}
-
 // Whether giving these tetrahedra to a tissue joins none of its pieces and makes no other piece vanish.
 bool joins_no_pieces(const TetComplex& complex, const Pieces& pieces, std::span<const TetId> tets, TissueId tissue) {
   std::map<std::uint32_t, std::uint32_t> taken;
@@ -215,6 +209,7 @@ class LabelMender {
   // Returns whether there was one.
   bool mend_by_one(VertexId v, std::vector<TetId>& changed) {
     best_ = {};
+    defects_.clear();
     for (const TetId t : complex_.tets_of_vertex[v]) try_tet(t);
     if (best_.gain == 0) return false;
     relabel(best_.tet, best_.tissue);
@@ -286,16 +281,42 @@ class LabelMender {
     for (const TetId other : complex_.behind[t]) {
       const TissueId tissue = complex_.tissue(other);
       if (tissue == own || std::find(tried.begin(), tried.begin() + count, tissue) != tried.begin() + count) continue;
-      if (count == 0) before = defect_around(complex_, t);
+      if (count == 0) before = defect_around(t);
       tried[count++] = tissue;
-      complex_.mesh.tissues[t] = tissue;
-      const unsigned after = defect_around(complex_, t);
-      complex_.mesh.tissues[t] = own;
-      if (after >= before || before - after < best_.gain) continue;
+      const unsigned least = std::max(1u, best_.gain);
+      if (before < least) continue;
+      const unsigned after = defect_around_as(t, tissue, before - least);
+      if (after > before - least) continue;
       const Choice choice = {before - after, price_(t, tissue), t, tissue};
       if (choice.price > max_price_ || (choice.gain == best_.gain && choice.price >= best_.price)) continue;
       if (keeps_pieces(t, tissue)) best_ = choice;
     }
+  }
+
+  unsigned defect_around(TetId t) {
+    unsigned sum = 0;
+    for (const VertexId v : complex_.mesh.tets[t]) {
+      const auto known = std::ranges::find(defects_, v, &VertexDefect::vertex);
+      if (known != defects_.end()) {
+        sum += known->defect;
+        continue;
+      }
+      defects_.push_back({v, star_defect(complex_, v)});
+      sum += defects_.back().defect;
+    }
+    return sum;
+  }
+
+  // If the tetrahedron were of this tissue; at least something above `most` where it is more than that.
+  unsigned defect_around_as(TetId t, TissueId tissue, unsigned most) {
+    const TissueId own = std::exchange(complex_.mesh.tissues[t], tissue);
+    unsigned sum = 0;
+    for (const VertexId v : complex_.mesh.tets[t]) {
+      sum += star_defect(complex_, v);
+      if (sum > most) break;
+    }
+    complex_.mesh.tissues[t] = own;
+    return sum;
   }
 
   bool keeps_pieces(TetId t, TissueId tissue) const {
@@ -325,6 +346,11 @@ class LabelMender {
   const RelabelPrice& price_;
   double max_price_;
   Choice best_;
+  struct VertexDefect {
+    VertexId vertex;
+    unsigned defect;
+  };
+  std::vector<VertexDefect> defects_;  // of the vertices around the one that is mended
 };
 
 }  // namespace

@@ -30,6 +30,7 @@ class SharedSets {
   bool is_root(TetId x) const { return parent_[x] == x; }
 
   void join(TetId a, TetId b) {
+    if (at(a).load(std::memory_order_relaxed) == at(b).load(std::memory_order_relaxed)) return;
     for (;;) {
       a = root(a);
       b = root(b);

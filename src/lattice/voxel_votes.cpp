@@ -355,13 +355,18 @@ TissueId VoxelVotes::interpolated_tissue(const std::array<Vec3, 4>& corners) con
     }
   }
   if (const auto only = only_tissue(low, high)) return *only;
+  const bool inside = image_.contains(low[0], low[1], low[2]) && image_.contains(high[0], high[1], high[2]);
+  const auto tissue_at = [&](int i, int j, int k) { return inside ? image_.at(i, j, k) : image_.at_or_background(i, j, k); };
   Ballot& ballot = thread_ballot();
   for (std::size_t n = 0; n < 5; ++n) {
     const Vec3 share = {points[n].x - lows[n][0], points[n].y - lows[n][1], points[n].z - lows[n][2]};
-    for (int corner = 0; corner < 8; ++corner) {
-      const int dx = corner & 1, dy = corner >> 1 & 1, dz = corner >> 2;
-      const double w = (dx ? share.x : 1 - share.x) * (dy ? share.y : 1 - share.y) * (dz ? share.z : 1 - share.z);
-      ballot.add(image_.at_or_background(lows[n][0] + dx, lows[n][1] + dy, lows[n][2] + dz), w);
+    for (int dz = 0; dz < 2; ++dz) {
+      for (int dy = 0; dy < 2; ++dy) {
+        for (int dx = 0; dx < 2; ++dx) {
+          const double w = (dx ? share.x : 1 - share.x) * (dy ? share.y : 1 - share.y) * (dz ? share.z : 1 - share.z);
+          ballot.add(tissue_at(lows[n][0] + dx, lows[n][1] + dy, lows[n][2] + dz), w);
+        }
+      }
     }
   }
   return ballot.winner().first;
