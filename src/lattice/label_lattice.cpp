@@ -159,9 +159,13 @@ std::vector<Demand> LabelLattice::Impl::demands() const {
   std::vector<Fidelity> fidelity = inherited_fidelity();
   std::vector<Demand> demands(fidelity.size(), {0, true, false});
   std::vector<double> volume_mm3(fidelity.size(), 0);
+  std::vector<double> leaf_mm3;  // by level
+  for (int level = 0; level <= lattice_.max_level(); ++level) {
+    const double h = std::ldexp(plan_.bcc_size_mm, -level);
+    leaf_mm3.push_back(h * h * h / 12);
+  }
   for (const LabelledLeaf& leaf : leaves_.list()) {
-    const double h = std::ldexp(plan_.bcc_size_mm, -leaf.tet.level);
-    const double part_mm3 = h * h * h / 12 / leaf.split().count;
+    const double part_mm3 = leaf_mm3[static_cast<std::size_t>(leaf.tet.level)] / leaf.split().count;
     visit_parts(leaf, [&](const Vote& v, const auto&, std::uint32_t) {
       volume_mm3[v.tissue] += part_mm3;
       fidelity[v.tissue].in_tets += v.count;

@@ -87,19 +87,16 @@ TetId find_behind(const TetComplex& complex, TetId t, std::size_t n) {
   return t;
 }
 
-// The lists of a mesh whose tetrahedron t is from[t] of one with the lists `before`; number: the other way round.
-VertexLists<TetId> renumbered(const VertexLists<TetId>& before, const TissueMesh& mesh, std::span<const TetId> from,
-                              std::span<const TetId> number) {
-  const auto is_kept = [&](TetId t) { return number[t] != TetComplex::kNone; };
+// The lists of a mesh that has tetrahedron t of another, with the lists `before`, as number[t], and some that are added.
+VertexLists<TetId> renumbered(const VertexLists<TetId>& before, std::span<const TetId> number, const TissueMesh& mesh,
+                              std::span<const TetId> added) {
   VertexLists<TetId> lists;
   lists.begin.assign(mesh.points_mm.size() + 1, 0);
   parallel_for(before.size(), [&](std::size_t v) {
-    lists.begin[v + 1] = static_cast<std::uint32_t>(std::ranges::count_if(before[v], is_kept));
+    std::uint32_t kept = 0;
+    for (const TetId t : before[v]) kept += number[t] != TetComplex::kNone;
+    lists.begin[v + 1] = kept;
   });
-  std::vector<TetId> added;
-  for (TetId t = 0; t < from.size(); ++t) {
-    if (from[t] == TetComplex::kNone) added.push_back(t);
-  }
   for (const TetId t : added) {
     for (const VertexId v : mesh.tets[t]) ++lists.begin[v + 1];
   }
@@ -108,7 +105,7 @@ VertexLists<TetId> renumbered(const VertexLists<TetId>& before, const TissueMesh
   std::vector<std::uint32_t> next(lists.begin.begin(), lists.begin.end() - 1);
   parallel_for(before.size(), [&](std::size_t v) {
     for (const TetId t : before[v]) {
-      if (is_kept(t)) lists.items[next[v]++] = number[t];
+      if (number[t] != TetComplex::kNone) lists.items[next[v]++] = number[t];
     }
   });
   for (const TetId t : added) {
@@ -142,20 +139,30 @@ TetComplex remake_complex(const TetComplex& before, TissueMesh mesh, std::span<c
   parallel_for(from.size(), [&](std::size_t t) {
     if (from[t] != TetComplex::kNone) number[from[t]] = static_cast<TetId>(t);
   });
-  complex.tets_of_vertex = renumbered(before.tets_of_vertex, complex.mesh, from, number);
+  std::vector<TetId> added;
   std::vector<char> at_new(complex.mesh.points_mm.size(), 0);  // vertices of tetrahedra that are new
   for (TetId t = 0; t < from.size(); ++t) {
     if (from[t] != TetComplex::kNone) continue;
+    added.push_back(t);
     for (const VertexId v : complex.mesh.tets[t]) at_new[v] = 1;
   }
+  complex.tets_of_vertex = renumbered(before.tets_of_vertex, number, complex.mesh, added);
   complex.behind.resize(complex.mesh.tets.size());
   parallel_for(from.size(), [&](std::size_t i) {
     const auto t = static_cast<TetId>(i);
-    const bool is_new = from[t] == TetComplex::kNone;
+    std::array<TetId, 4>& behind = complex.behind[t];
+    if (from[t] == TetComplex::kNone) {
+      for (std::size_t n = 0; n < 4; ++n) behind[n] = find_behind(complex, t, n);
+      return;
+    }
+    bool is_inside = true;
     for (std::size_t n = 0; n < 4; ++n) {
-      const TetId other = is_new ? TetComplex::kNone : number[before.behind[from[t]][n]];
-      const bool is_known = other != TetComplex::kNone && (other != t || !at_new[complex.mesh.tets[t][(n + 1) % 4]]);
-      complex.behind[t][n] = is_known ? other : find_behind(complex, t, n);
+      behind[n] = number[before.behind[from[t]][n]];
+      is_inside = is_inside && behind[n] != TetComplex::kNone && behind[n] != t;
+    }
+    for (std::size_t n = 0; !is_inside && n < 4; ++n) {  // beyond the border there may be something now
+      const bool may_have_new = behind[n] == t && at_new[complex.mesh.tets[t][(n + 1) % 4]];
+      if (behind[n] == TetComplex::kNone || may_have_new) behind[n] = find_behind(complex, t, n);
     }
   });
   return complex;
