@@ -233,9 +233,8 @@ bool LabelLattice::Impl::lies_on_boundary(TetRef leaf, const std::vector<Demand>
 // Leaves that were passed over before are not looked at again while no tissue asks for more.
 std::vector<TetRef> LabelLattice::Impl::leaves_wanted(const std::vector<Demand>& asked) const {
   const bool any_asks_for_more =
-      asked_.empty() || !std::ranges::equal(asked, asked_, [](const Demand& now, const Demand& before) {
-        return !now.exceeds(before);
-      });
+      asked_.empty() ||
+      !std::ranges::equal(asked, asked_, [](const Demand& now, const Demand& before) { return !now.exceeds(before); });
   const int deepest_asked = std::ranges::max(asked, {}, &Demand::level_limit).level_limit;
   std::vector<char> wanted(leaves_.list().size());
   parallel_for(leaves_.list().size(), [&](std::size_t i) {

@@ -14,10 +14,10 @@ namespace anatomesh {
 struct LabelledLeaf {
   TetRef tet;
   std::uint8_t split_edges = 0;
-  bool decided = false;  ///< a repair gave some part its tissue, which is then not that of the vote
-  bool fresh = true;     ///< it, or its split, was not there before the last refinement
+  bool decided = false;    ///< a repair gave some part its tissue, which is then not that of the vote
+  bool fresh = true;       ///< it, or its split, was not there before the last refinement
   bool recounted = false;  ///< it stayed, but voxels have become known that were inside a large pure tetrahedron
-  bool revote = false;   ///< what it is refined into votes, even where all else inherits
+  bool revote = false;     ///< what it is refined into votes, even where all else inherits
   std::array<Vote, 4> votes;
 
   const GreenSplit& split() const { return green_split(split_edges); }

@@ -51,7 +51,9 @@ class LatticePointMap {
     return part(p[0]) | part(p[1]) << 21 | part(p[2]) << 42;
   }
   // The highest bits of the product: only they depend on all coordinates.
-  std::size_t home(std::uint64_t key) const { return static_cast<std::size_t>((key * 0x9e3779b97f4a7c15ULL) >> shift_); }
+  std::size_t home(std::uint64_t key) const {
+    return static_cast<std::size_t>((key * 0x9e3779b97f4a7c15ULL) >> shift_);
+  }
   void grow() {
     const std::size_t capacity = keys_.empty() ? 1024 : 2 * keys_.size();
     shift_ = 64 - std::countr_zero(capacity);

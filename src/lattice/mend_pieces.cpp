@@ -61,6 +61,7 @@ class PieceMender {
         contents_(contents),
         claims_(claims),
         price_(voxel_price(complex, image, contents)),
+        changed_at_(complex.mesh.points_mm.size(), 0),
         locked_(contents.decided) {}
 
   PieceRepair run() {
@@ -101,6 +102,25 @@ class PieceMender {
   void join_pieces();
   double path_cost(TetId t, TissueId tissue) const;
   void join_piece(std::uint32_t piece, const std::vector<TetId>& tets, DisjointSets& joined);
+  // The last tetrahedron of a path, and the one of another piece behind it.
+  struct Way {
+    TetId last, reached;
+  };
+  std::optional<Way> find_way(std::uint32_t piece, const std::vector<TetId>& tets, DisjointSets& joined);
+  void lay_path(std::uint32_t piece, const Way& way, DisjointSets& joined);
+  void give_up(std::uint32_t piece, const std::vector<TetId>& tets);
+  // A search after which nothing was relabelled. As long as nothing changes where it looked, another one would end in
+  // the same way.
+  struct VainSearch {
+    std::uint32_t component = kNone;
+    std::uint32_t number = 0;
+    std::size_t tets = 0;  // of the piece
+    std::vector<TetId> seen;
+    std::vector<std::pair<TetId, std::uint32_t>> mains;  // of those of its tissue there, the components of their pieces
+    std::vector<TetId> wanted;                           // to be refined first
+  };
+  VainSearch vain_search(std::uint32_t piece, const std::vector<TetId>& tets, std::vector<TetId> wanted) const;
+  bool holds_still(const VainSearch& search, std::uint32_t piece, const std::vector<TetId>& tets) const;
 
   std::vector<std::vector<TetId>> tets_of(const std::vector<char>& wanted) const;
   TissueId other_tissue(TetId t) const;
@@ -125,9 +145,12 @@ class PieceMender {
     bool reached = false;
     double cost = -1;  // of a way through it
   };
-  TetMap<Known> known_;                // to the search for a path
-  std::vector<std::uint32_t> region_;  // by tetrahedron of a piece that is cut: the component it goes to
-  std::vector<char> locked_;  // relabelled by a repair: others go around it
+  TetMap<Known> known_;               // to the search for a path
+  std::map<TetId, VainSearch> vain_;  // by the first tetrahedron of the piece
+  std::uint32_t searches_ = 0;
+  std::vector<std::uint32_t> changed_at_;  // by vertex: the number of the last search before a change beside it
+  std::vector<std::uint32_t> region_;      // by tetrahedron of a piece that is cut: the component it goes to
+  std::vector<char> locked_;               // relabelled by a repair: others go around it
   PieceRepair repair_;
 
   std::vector<char> open_;           // by tissue: more than one piece or component
@@ -236,6 +259,7 @@ void PieceMender::relabel(TetId t, TissueId tissue, std::uint32_t piece) {
   pieces_.of_tet[t] = piece;
   locked_[t] = 1;
   repair_.changed.push_back(t);
+  for (const VertexId v : complex_.mesh.tets[t]) changed_at_[v] = searches_;
 }
 
 // Pieces without a voxel of their tissue go to the neighbour behind most of their faces, unless one is all that its
@@ -415,7 +439,8 @@ double PieceMender::path_cost(TetId t, TissueId tissue) const {
 }
 
 // Dijkstra's algorithm from a piece to the nearest other piece of the same component.
-void PieceMender::join_piece(std::uint32_t piece, const std::vector<TetId>& tets, DisjointSets& joined) {
+std::optional<PieceMender::Way> PieceMender::find_way(std::uint32_t piece, const std::vector<TetId>& tets,
+                                                      DisjointSets& joined) {
   constexpr double kReach = 40;
   constexpr std::size_t kMaxVisited = 100000;
   const TissueId tissue = pieces_.list[piece].tissue;
@@ -430,10 +455,7 @@ void PieceMender::join_piece(std::uint32_t piece, const std::vector<TetId>& tets
   for (const TetId t : tets) {
     if (complex_.tissue(t) == tissue) open.push({0, t, t});  // another path may have taken it
   }
-  TetId end = 0, last = 0;
-  bool found = false;
-  std::size_t visited = 0;
-  while (!open.empty() && visited < kMaxVisited) {
+  for (std::size_t visited = 0; !open.empty() && visited < kMaxVisited;) {
     const Step step = open.top();
     open.pop();
     Known& here = known_[step.tet];
@@ -442,10 +464,8 @@ void PieceMender::join_piece(std::uint32_t piece, const std::vector<TetId>& tets
     here.from = step.from;
     ++visited;
     if (complex_.tissue(step.tet) == tissue && pieces_.of_tet[step.tet] != kNone &&
-        joined.root(pieces_.of_tet[step.tet]) != joined.root(piece)) {
-      end = step.from, last = step.tet, found = true;
-      break;
-    }
+        joined.root(pieces_.of_tet[step.tet]) != joined.root(piece))
+      return Way{step.from, step.tet};
     for (const TetId other : complex_.behind[step.tet]) {
       if (complex_.tissue(other) == tissue) {
         if (main_of(other) == component && !known_[other].reached) open.push({step.cost, other, step.tet});
@@ -457,16 +477,33 @@ void PieceMender::join_piece(std::uint32_t piece, const std::vector<TetId>& tets
       if (step.cost + there.cost < kReach) open.push({step.cost + there.cost, other, step.tet});
     }
   }
-  if (!found) {
-    constexpr std::size_t kScrap = 64;  // tetrahedra
-    bool too_large = false;
-    for (const TetId t : tets) too_large = wants_refinement(t, kPathSize) || too_large;
-    const bool untouched = std::all_of(tets.begin(), tets.end(), [&](TetId t) { return complex_.tissue(t) == tissue; });
-    if (!too_large && untouched && tets.size() <= kScrap) dissolve(tets);  // walled in: no way for it
+  return {};
+}
+
+void PieceMender::join_piece(std::uint32_t piece, const std::vector<TetId>& tets, DisjointSets& joined) {
+  ++searches_;
+  if (const auto vain = vain_.find(tets.front()); vain != vain_.end() && holds_still(vain->second, piece, tets)) {
+    repair_.refine.insert(repair_.refine.end(), vain->second.wanted.begin(), vain->second.wanted.end());
     return;
   }
+  const std::size_t changed = repair_.changed.size(), wanted = repair_.refine.size();
+  if (const auto way = find_way(piece, tets, joined)) {
+    lay_path(piece, *way, joined);
+  } else {
+    give_up(piece, tets);
+  }
+  const TissueId tissue = pieces_.list[piece].tissue;
+  if (repair_.changed.size() > changed ||
+      std::ranges::any_of(tets, [&](TetId t) { return complex_.tissue(t) != tissue; }))
+    return;
+  vain_[tets.front()] =
+      vain_search(piece, tets, {repair_.refine.begin() + static_cast<std::ptrdiff_t>(wanted), repair_.refine.end()});
+}
+
+void PieceMender::lay_path(std::uint32_t piece, const Way& way, DisjointSets& joined) {
+  const TissueId tissue = pieces_.list[piece].tissue;
   std::vector<TetId> path;
-  for (TetId t = end; complex_.tissue(t) != tissue; t = known_[t].from) path.push_back(t);
+  for (TetId t = way.last; complex_.tissue(t) != tissue; t = known_[t].from) path.push_back(t);
   bool too_large = false;
   for (const TetId t : path) {
     const float size = contents_.fixed[t] ? 0 : kPathSize;
@@ -474,7 +511,40 @@ void PieceMender::join_piece(std::uint32_t piece, const std::vector<TetId>& tets
   }
   if (too_large) return;
   for (const TetId t : path) relabel(t, tissue, piece);
-  joined.join(piece, pieces_.of_tet[last]);
+  joined.join(piece, pieces_.of_tet[way.reached]);
+}
+
+// There is no way for it: where it is no more than a scrap, it goes.
+void PieceMender::give_up(std::uint32_t piece, const std::vector<TetId>& tets) {
+  constexpr std::size_t kScrap = 64;  // tetrahedra
+  const TissueId tissue = pieces_.list[piece].tissue;
+  bool too_large = false;
+  for (const TetId t : tets) too_large = wants_refinement(t, kPathSize) || too_large;
+  const bool untouched = std::ranges::all_of(tets, [&](TetId t) { return complex_.tissue(t) == tissue; });
+  if (!too_large && untouched && tets.size() <= kScrap) dissolve(tets);
+}
+
+// What the last search looked at.
+PieceMender::VainSearch PieceMender::vain_search(std::uint32_t piece, const std::vector<TetId>& tets,
+                                                 std::vector<TetId> wanted) const {
+  VainSearch search{main_[piece], searches_, tets.size(), {}, {}, std::move(wanted)};
+  const TissueId tissue = pieces_.list[piece].tissue;
+  known_.for_each([&](TetId t) {
+    search.seen.push_back(t);
+    for (const TetId other : complex_.behind[t]) {
+      if (complex_.tissue(other) == tissue) search.mains.emplace_back(other, main_of(other));
+    }
+  });
+  return search;
+}
+
+bool PieceMender::holds_still(const VainSearch& search, std::uint32_t piece, const std::vector<TetId>& tets) const {
+  const auto is_as_it_was = [&](TetId t) {
+    return std::ranges::all_of(complex_.mesh.tets[t], [&](VertexId v) { return changed_at_[v] < search.number; });
+  };
+  return search.component == main_[piece] && search.tets == tets.size() &&
+         std::ranges::all_of(search.seen, is_as_it_was) &&
+         std::ranges::all_of(search.mains, [&](const auto& main) { return main_of(main.first) == main.second; });
 }
 
 }  // namespace

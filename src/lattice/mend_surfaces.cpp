@@ -111,10 +111,10 @@ class Star {
   static constexpr Place kNowhere = 0xffff;
 
   std::span<const TetId> tets_;
-  std::vector<TissueId> own_;                  // of the tetrahedra
-  std::vector<TissueId> tissues_;              // each once
-  std::vector<Place> table_;                   // places of tetrahedra
-  std::vector<Place> parent_, fan_;            // union-find over the star
+  std::vector<TissueId> own_;                   // of the tetrahedra
+  std::vector<TissueId> tissues_;               // each once
+  std::vector<Place> table_;                    // places of tetrahedra
+  std::vector<Place> parent_, fan_;             // union-find over the star
   std::vector<std::pair<Place, Place>> faces_;  // between two tetrahedra
   std::vector<std::pair<Place, Place>> rims_;   // those between two tissues
 };

@@ -174,7 +174,8 @@ std::vector<TetRef> RedGreenLattice::tets_of_level(int level) const {
 std::vector<TetRef> RedGreenLattice::leaves() const {
   constexpr std::size_t kGrain = 1 << 16;
   std::vector<std::size_t> first_block = {0};  // by level
-  for (const Level& level : levels_) first_block.push_back(first_block.back() + (level.state.size() + kGrain - 1) / kGrain);
+  for (const Level& level : levels_)
+    first_block.push_back(first_block.back() + (level.state.size() + kGrain - 1) / kGrain);
   const auto for_each_leaf = [&](std::size_t block, auto&& visit) {
     const auto after = std::ranges::upper_bound(first_block, block);
     const auto level = static_cast<std::size_t>(after - first_block.begin() - 1);
@@ -191,8 +192,8 @@ std::vector<TetRef> RedGreenLattice::leaves() const {
   std::partial_sum(next.begin(), next.end(), next.begin());
   std::vector<TetRef> leaves(next.back());
   parallel_for(
-      first_block.back(), [&](std::size_t block) { for_each_leaf(block, [&](TetRef t) { leaves[next[block]++] = t; }); },
-      1);
+      first_block.back(),
+      [&](std::size_t block) { for_each_leaf(block, [&](TetRef t) { leaves[next[block]++] = t; }); }, 1);
   return leaves;
 }
 

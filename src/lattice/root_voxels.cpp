@@ -76,9 +76,8 @@ class RootSorter {
     }
     sorted.begin[slots] = count;
     sorted.order.resize(count);
-    for_each_voxel([&](std::size_t below, std::size_t slot, std::uint32_t voxel) {
-      sorted.order[next[below][slot]++] = voxel;
-    });
+    for_each_voxel(
+        [&](std::size_t below, std::size_t slot, std::uint32_t voxel) { sorted.order[next[below][slot]++] = voxel; });
     return sorted;
   }
 
@@ -130,7 +129,7 @@ class RootSorter {
   }
 
   std::array<std::int32_t, 3> cells_;
-  std::array<Home, 64> homes_;         // by code
+  std::array<Home, 64> homes_;          // by code
   std::array<std::int32_t, 64> slots_;  // of the tetrahedra of homes_, from the first of the point's cube
   std::array<std::vector<Coordinate>, 3> axes_;
   std::vector<std::size_t> layers_;  // along the last axis: first voxels of the layers of cubes, and the end

@@ -80,14 +80,17 @@ void match_faces_at(TetComplex& complex, VertexId v, std::vector<OpenFace>& open
 // The tetrahedron behind the face of t opposite to its corner n, or t.
 TetId find_behind(const TetComplex& complex, TetId t, std::size_t n) {
   const auto& tet = complex.mesh.tets[t];
-  const auto has = [&](TetId other, VertexId v) { return std::ranges::find(complex.mesh.tets[other], v) != complex.mesh.tets[other].end(); };
+  const auto has = [&](TetId other, VertexId v) {
+    return std::ranges::find(complex.mesh.tets[other], v) != complex.mesh.tets[other].end();
+  };
   for (const TetId other : complex.tets_of_vertex[tet[(n + 1) % 4]]) {
     if (other != t && has(other, tet[(n + 2) % 4]) && has(other, tet[(n + 3) % 4])) return other;
   }
   return t;
 }
 
-// The lists of a mesh that has tetrahedron t of another, with the lists `before`, as number[t], and some that are added.
+// The lists of a mesh that has tetrahedron t of another, with the lists `before`, as number[t], and some that are
+// added.
 VertexLists<TetId> renumbered(const VertexLists<TetId>& before, std::span<const TetId> number, const TissueMesh& mesh,
                               std::span<const TetId> added) {
   VertexLists<TetId> lists;

@@ -24,6 +24,12 @@ class TetMap {
     return slots_[at].value;
   }
 
+  /// Calls visit(tetrahedron) for each that something is known of.
+  template <class Visit>
+  void for_each(const Visit& visit) const {
+    for (const std::size_t at : used_) visit(slots_[at].tet);
+  }
+
   void clear() {
     for (const std::size_t at : used_) slots_[at].tet = kNobody;
     used_.clear();

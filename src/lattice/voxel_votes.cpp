@@ -143,8 +143,9 @@ void VoxelVotes::vote_in_roots() {
       votes_[0].size(),
       [&](std::size_t s) {
         const std::uint32_t first = begin_[0][s], count = begin_[0][s + 1] - first;
-        votes_[0][s] = count_votes({&order_[0] + first, count},
-                                   [&] { return corners_in_voxels({0, static_cast<std::uint32_t>(s)}); });
+        votes_[0][s] = count_votes({&order_[0] + first, count}, [&] {
+          return corners_in_voxels({0, static_cast<std::uint32_t>(s)});
+        });
       },
       64);
 }

@@ -56,8 +56,8 @@ class VoxelVotes {
   /// until the thread's next call.
   std::span<const std::uint32_t> voxels_of_part(TetRef leaf, std::size_t part) const;
 
-  /// The leaf among whose voxels one is, and the part. Nothing for one inside a large pure tetrahedron or outside of the
-  /// lattice.
+  /// The leaf among whose voxels one is, and the part. Nothing for one inside a large pure tetrahedron or outside of
+  /// the lattice.
   struct Holder {
     TetRef leaf;
     int part;
@@ -93,7 +93,7 @@ class VoxelVotes {
 
   const TissueImage& image_;
   const RedGreenLattice& lattice_;
-  std::array<std::vector<double>, 3> position_;    // of voxel centres along each axis, in units of level 0
+  std::array<std::vector<double>, 3> position_;  // of voxel centres along each axis, in units of level 0
   double rows_per_voxel_, layers_per_row_;
   Vec3 index_per_unit_, index_of_origin_;          // lattice point of level 0 -> voxel index
   std::vector<std::uint32_t> order_;               // all voxels of the crop, grouped by tetrahedron
