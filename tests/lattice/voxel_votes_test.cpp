@@ -109,6 +109,21 @@ TEST(VoxelVotes, EachVoxelIsInExactlyOneTet) {
   }
 }
 
+TEST(VoxelVotes, HoldersAreFound) {
+  for (const VotedImage& voted : voted_images()) {
+    for (const TetRef leaf : leaves_of(voted.lattice())) {
+      for (std::size_t part = 0; part < voted.parts(leaf); ++part) {
+        for (const std::uint32_t v : voted.votes().voxels_of_part(leaf, part)) {
+          const auto holder = voted.votes().holder_of(v);
+          ASSERT_TRUE(holder.has_value());
+          EXPECT_EQ(holder->leaf, leaf);
+          EXPECT_EQ(holder->part, static_cast<int>(part));
+        }
+      }
+    }
+  }
+}
+
 TEST(VoxelVotes, VoxelsLieInTheirTets) {
   for (const VotedImage& voted : voted_images()) {
     for (const TetRef leaf : leaves_of(voted.lattice())) {
