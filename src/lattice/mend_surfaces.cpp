@@ -203,7 +203,37 @@ bool splits_no_pieces(const TetComplex& complex, std::span<const TetId> star, Ti
 class LabelMender {
  public:
   LabelMender(TetComplex& complex, Pieces& pieces, const RelabelPrice& price, double max_price)
-      : complex_(complex), pieces_(pieces), price_(price), max_price_(max_price) {}
+      : complex_(complex),
+        pieces_(pieces),
+        price_(price),
+        max_price_(max_price),
+        changed_at_(complex.mesh.points_mm.size(), 0),
+        stuck_at_(changed_at_) {}
+
+  // Does what it can at a vertex. What could not be done once is not tried again before something changes around it.
+  void mend(VertexId v, std::vector<TetId>& changed) {
+    if (is_stuck(v)) return;
+    ++time_;
+    while (star_defect(complex_, v) > 0 && mend_by_one(v, changed)) {
+    }
+    if (star_defect(complex_, v) == 0 || mend_by_star(v, changed)) return;
+    stuck_at_[v] = ++time_;
+  }
+
+ private:
+  // All that is looked at lies at a vertex of the tetrahedra around v, and so does what makes a piece grow that must
+  // not vanish.
+  bool is_stuck(VertexId v) const {
+    if (stuck_at_[v] == 0) return false;
+    return std::ranges::all_of(complex_.tets_of_vertex[v], [&](TetId t) {
+      return std::ranges::all_of(complex_.mesh.tets[t], [&](VertexId w) { return changed_at_[w] < stuck_at_[v]; });
+    });
+  }
+
+  void set_tissue(TetId t, TissueId tissue) {
+    complex_.mesh.tissues[t] = tissue;
+    for (const VertexId v : complex_.mesh.tets[t]) changed_at_[v] = time_;
+  }
 
   // Takes the tetrahedron at v, and the tissue for it, that leave fewest defects; of equal ones the cheapest.
   // Returns whether there was one.
@@ -251,7 +281,7 @@ class LabelMender {
     for (const TetId t : star) {
       if (complex_.tissue(t) == best.tissue) continue;
       if (complex_.tissue(t) != 0) --pieces_.list[pieces_.of_tet[t]].tets;
-      complex_.mesh.tissues[t] = best.tissue;
+      set_tissue(t, best.tissue);
       pieces_.of_tet[t] = piece;
       if (piece != Pieces::kNone) ++pieces_.list[piece].tets;
       changed.push_back(t);
@@ -259,7 +289,6 @@ class LabelMender {
     return true;
   }
 
- private:
   unsigned defects_at(const std::vector<VertexId>& vertices) const {
     unsigned sum = 0;
     for (const VertexId v : vertices) sum += star_defect(complex_, v);
@@ -332,7 +361,7 @@ class LabelMender {
 
   void relabel(TetId t, TissueId tissue) {
     if (complex_.tissue(t) != 0) --pieces_.list[pieces_.of_tet[t]].tets;
-    complex_.mesh.tissues[t] = tissue;
+    set_tissue(t, tissue);
     pieces_.of_tet[t] = Pieces::kNone;
     if (tissue == 0) return;
     for (const TetId other : complex_.behind[t]) {
@@ -350,7 +379,10 @@ class LabelMender {
     VertexId vertex;
     unsigned defect;
   };
-  std::vector<VertexDefect> defects_;  // of the vertices around the one that is mended
+  std::uint32_t time_ = 0;
+  std::vector<std::uint32_t> changed_at_;  // by vertex: when a tetrahedron there was relabelled
+  std::vector<std::uint32_t> stuck_at_;    // by vertex: when the last attempt was in vain, 0 for none
+  std::vector<VertexDefect> defects_;      // of the vertices around the one that is mended
 };
 
 }  // namespace
@@ -441,9 +473,7 @@ std::vector<VertexId> mend_single_tets(TetComplex& complex, Pieces& pieces, std:
     std::vector<VertexId> next = singular;
     for (const VertexId v : singular) {
       const std::size_t done = changed.size();
-      while (star_defect(complex, v) > 0 && mender.mend_by_one(v, changed)) {
-      }
-      if (star_defect(complex, v) > 0) mender.mend_by_star(v, changed);
+      mender.mend(v, changed);
       progress = progress || changed.size() > done;
       for (std::size_t i = done; i < changed.size(); ++i) {
         const auto& tet = complex.mesh.tets[changed[i]];
