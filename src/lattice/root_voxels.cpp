@@ -1,6 +1,8 @@
 #include "lattice/root_voxels.h"
 
+#include <algorithm>
 #include <cmath>
+#include <type_traits>
 #include <utility>
 
 #include "base/parallel.h"
@@ -41,16 +43,17 @@ class RootSorter {
  public:
   RootSorter(const std::array<std::vector<double>, 3>& position, const std::array<std::int32_t, 3>& root_cells)
       : cells_(root_cells), homes_(make_homes()) {
-    for (std::size_t code = 0; code < 64; ++code) {
-      const auto& [cell, local] = homes_[code];
-      slots_[code] = kTetsPerCell * (cell[0] + cells_[0] * (cell[1] + cells_[1] * cell[2])) + local;
-    }
     for (std::size_t a = 0; a < 3; ++a) {
       for (const double x : position[a]) {
         const auto cell = static_cast<std::int32_t>(std::floor(x / 4));
-        axes_[a].push_back({cell, x - (4 * cell + 2)});
+        const double off = x - (4 * cell + 2);
+        axes_[a].push_back({std::abs(off), cell, off < 0});
       }
     }
+    const auto is_inner = [&](const Coordinate& x) { return is_inner_cell(0, x.cell); };
+    first_inner_ = static_cast<std::size_t>(std::ranges::find_if(axes_[0], is_inner) - axes_[0].begin());
+    end_inner_ = first_inner_;
+    while (end_inner_ < axes_[0].size() && is_inner(axes_[0][end_inner_])) ++end_inner_;
     for (std::size_t k = 0; k < axes_[2].size(); ++k) {
       if (k == 0 || axes_[2][k].cell != axes_[2][k - 1].cell) layers_.push_back(k);
     }
@@ -83,11 +86,12 @@ class RootSorter {
 
  private:
   struct Coordinate {
+    double far;  // from the cell's centre
     std::int32_t cell;
-    double off;  // from the cell's centre
+    bool negative;
   };
 
-  bool is_inner(std::size_t axis, std::int32_t cell) const { return cell >= 0 && cell + 1 < cells_[axis]; }
+  bool is_inner_cell(std::size_t axis, std::int32_t cell) const { return cell >= 0 && cell + 1 < cells_[axis]; }
 
   template <class Visit>
   void for_each_voxel(const Visit& visit) const {
@@ -105,20 +109,34 @@ class RootSorter {
   template <class Visit>
   void visit_row(std::size_t j, std::size_t k, const Visit& visit) const {
     const Coordinate y = axes_[1][j], z = axes_[2][k];
-    const double far_y = std::abs(y.off), far_z = std::abs(z.off);
-    const unsigned negative = unsigned{y.off < 0} << 1u | unsigned{z.off < 0} << 2u;
-    const bool inner = is_inner(1, y.cell) && is_inner(2, z.cell);
+    const bool inner = is_inner_cell(1, y.cell) && is_inner_cell(2, z.cell);
     const std::int64_t first = std::int64_t{kTetsPerCell} * cells_[0] * (y.cell + cells_[1] * z.cell);
-    auto voxel = static_cast<std::uint32_t>(axes_[0].size() * (j + axes_[1].size() * k));
-    for (const Coordinate& x : axes_[0]) {
-      const double far_x = std::abs(x.off);
-      const unsigned code = code_of(far_x >= far_y, far_x >= far_z, far_y >= far_z, negative | unsigned{x.off < 0});
-      const LatticePoint& cell = homes_[code].cell;
-      if ((inner && is_inner(0, x.cell)) || is_in_lattice({x.cell + cell[0], y.cell + cell[1], z.cell + cell[2]}))
-        visit(static_cast<std::size_t>(cell[2]), static_cast<std::size_t>(first + kTetsPerCell * x.cell + slots_[code]),
-              voxel);
-      ++voxel;
+    // In a row, only three bits of the code vary.
+    std::array<Home, 8> homes;
+    std::array<std::int64_t, 8> slots;
+    for (unsigned n = 0; n < 8; ++n) {
+      const unsigned negative = unsigned{y.negative} << 1u | unsigned{z.negative} << 2u | n >> 2u;
+      homes[n] = homes_[code_of(n & 1u, n & 2u, y.far >= z.far, negative)];
+      const auto& [cell, local] = homes[n];
+      slots[n] = first + kTetsPerCell * (cell[0] + cells_[0] * (cell[1] + std::int64_t{cells_[1]} * cell[2])) + local;
     }
+    const auto first_voxel = static_cast<std::uint32_t>(axes_[0].size() * (j + axes_[1].size() * k));
+    const auto visit_voxels = [&](std::size_t begin, std::size_t end, const auto& may_be_outside) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const Coordinate& x = axes_[0][i];
+        const unsigned n = unsigned{x.far >= y.far} | unsigned{x.far >= z.far} << 1u | unsigned{x.negative} << 2u;
+        const LatticePoint& cell = homes[n].cell;
+        if (may_be_outside && !is_in_lattice({x.cell + cell[0], y.cell + cell[1], z.cell + cell[2]})) continue;
+        visit(static_cast<std::size_t>(cell[2]), static_cast<std::size_t>(slots[n] + kTetsPerCell * x.cell),
+              first_voxel + static_cast<std::uint32_t>(i));
+      }
+    };
+    constexpr std::true_type kMayBeOutside;
+    constexpr std::false_type kIsInside;
+    if (!inner) return visit_voxels(0, axes_[0].size(), kMayBeOutside);
+    visit_voxels(0, first_inner_, kMayBeOutside);
+    visit_voxels(first_inner_, end_inner_, kIsInside);
+    visit_voxels(end_inner_, axes_[0].size(), kMayBeOutside);
   }
 
   bool is_in_lattice(const LatticePoint& cell) const {
@@ -129,9 +147,9 @@ class RootSorter {
   }
 
   std::array<std::int32_t, 3> cells_;
-  std::array<Home, 64> homes_;          // by code
-  std::array<std::int32_t, 64> slots_;  // of the tetrahedra of homes_, from the first of the point's cube
+  std::array<Home, 64> homes_;  // by code
   std::array<std::vector<Coordinate>, 3> axes_;
+  std::size_t first_inner_ = 0, end_inner_ = 0;  // along the first axis: voxels whose tetrahedra are all in the lattice
   std::vector<std::size_t> layers_;  // along the last axis: first voxels of the layers of cubes, and the end
 };
 
