@@ -532,6 +532,7 @@ TissueId choose_tissue(const TetComplex& complex, const Pieces& pieces, const st
 
 void mend_neighbourhoods(TetComplex& complex, Pieces& pieces, std::span<const VertexId> vertices,
                          std::span<const float> sizes, std::size_t max_tets, std::vector<TetId>& changed) {
+  const std::size_t done = changed.size();
   for (const std::vector<TetId>& group : group_neighbourhoods(complex, vertices)) {
     if (group.size() > max_tets) continue;
     const TissueId tissue = choose_tissue(complex, pieces, group, sizes);
@@ -541,7 +542,7 @@ void mend_neighbourhoods(TetComplex& complex, Pieces& pieces, std::span<const Ve
       changed.push_back(t);
     }
   }
-  pieces = find_pieces(complex);
+  if (changed.size() > done) pieces = find_pieces(complex);
 }
 
 }  // namespace anatomesh

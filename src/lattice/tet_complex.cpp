@@ -15,7 +15,9 @@ constexpr std::size_t kGrain = 4096;
 /// Union-find by many threads at once. Roots are the lowest of their sets, whatever the order.
 class SharedSets {
  public:
-  explicit SharedSets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), TetId{0}); }
+  explicit SharedSets(std::size_t n) : parent_(n) {
+    parallel_for(n, [&](std::size_t t) { parent_[t] = static_cast<TetId>(t); });
+  }
 
   TetId root(TetId x) {
     for (;;) {
@@ -171,6 +173,31 @@ TetComplex remake_complex(const TetComplex& before, TissueMesh mesh, std::span<c
   return complex;
 }
 
+namespace {
+
+// Numbers the roots of tissues in ascending order.
+void list_roots(const std::vector<TissueId>& tissues, const SharedSets& sets, Pieces& pieces) {
+  const auto for_each_root = [&](std::size_t begin, std::size_t end, const auto& visit) {
+    for (std::size_t t = begin; t < end; ++t) {
+      if (tissues[t] != 0 && sets.is_root(static_cast<TetId>(t))) visit(static_cast<TetId>(t));
+    }
+  };
+  std::vector<std::uint32_t> next(tissues.size() / kGrain + 2, 0);  // by block
+  parallel_blocks(tissues.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for_each_root(begin, end, [&](TetId) { ++next[begin / kGrain + 1]; });
+  });
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  pieces.list.resize(next.back());
+  parallel_blocks(tissues.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for_each_root(begin, end, [&](TetId t) {
+      pieces.of_tet[t] = next[begin / kGrain]++;
+      pieces.list[pieces.of_tet[t]] = {tissues[t], 0, t};
+    });
+  });
+}
+
+}  // namespace
+
 Pieces find_pieces(const TetComplex& complex) {
   const auto& tissues = complex.mesh.tissues;
   SharedSets sets(tissues.size());
@@ -182,11 +209,7 @@ Pieces find_pieces(const TetComplex& complex) {
   });
   Pieces pieces;
   pieces.of_tet.assign(tissues.size(), Pieces::kNone);
-  for (TetId t = 0; t < tissues.size(); ++t) {
-    if (tissues[t] == 0 || !sets.is_root(t)) continue;  // the lowest of its piece
-    pieces.of_tet[t] = static_cast<std::uint32_t>(pieces.list.size());
-    pieces.list.push_back({tissues[t], 0, t});
-  }
+  list_roots(tissues, sets, pieces);
   parallel_blocks(tissues.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     std::uint32_t piece = Pieces::kNone, count = 0;
     const auto add_up = [&] {
