@@ -147,6 +147,7 @@ class PieceMender {
   };
   TetMap<Known> known_;               // to the search for a path
   std::map<TetId, VainSearch> vain_;  // by the first tetrahedron of the piece
+  std::size_t remembered_ = 0;        // tetrahedra that those have looked at
   std::uint32_t searches_ = 0;
   std::vector<std::uint32_t> changed_at_;  // by vertex: the number of the last search before a change beside it
   std::vector<std::uint32_t> region_;      // by tetrahedron of a piece that is cut: the component it goes to
@@ -493,9 +494,10 @@ void PieceMender::join_piece(std::uint32_t piece, const std::vector<TetId>& tets
     give_up(piece, tets);
   }
   const TissueId tissue = pieces_.list[piece].tissue;
-  if (repair_.changed.size() > changed ||
-      std::ranges::any_of(tets, [&](TetId t) { return complex_.tissue(t) != tissue; }))
-    return;
+  const bool was_in_vain = repair_.changed.size() == changed &&
+                           std::ranges::all_of(tets, [&](TetId t) { return complex_.tissue(t) == tissue; });
+  remembered_ += was_in_vain ? known_.size() : 0;
+  if (!was_in_vain || remembered_ > complex_.mesh.tets.size()) return;
   vain_[tets.front()] =
       vain_search(piece, tets, {repair_.refine.begin() + static_cast<std::ptrdiff_t>(wanted), repair_.refine.end()});
 }

@@ -24,6 +24,8 @@ class TetMap {
     return slots_[at].value;
   }
 
+  std::size_t size() const { return used_.size(); }
+
   /// Calls visit(tetrahedron) for each that something is known of.
   template <class Visit>
   void for_each(const Visit& visit) const {

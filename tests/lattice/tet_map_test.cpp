@@ -20,6 +20,7 @@ TEST(TetMap, KnowsWhatAMapKnows) {
       flat[t] += n;
       map[t] += n;
     }
+    EXPECT_EQ(flat.size(), map.size());
     std::map<TetId, int> listed;
     flat.for_each([&](TetId t) { ++listed[t]; });
     EXPECT_EQ(listed.size(), map.size());
