@@ -37,7 +37,7 @@ constexpr std::array<Vec3, 14> kSearchDirections = {Vec3{1, 0, 0},
 // The tetrahedra at v; good until the thread's next call.
 const StarSlack& AngleGuard::star(VertexId v) const {
   static thread_local StarSlack star;
-  star.clear();
+  star.start(bounds_, mesh_.points_mm[v]);
   for (const TetId t : topology_.tets_of_vertex[v]) {
     const auto [b, c, d] = corners_after(mesh_.tets[t], v);
     star.add(mesh_.points_mm[b], mesh_.points_mm[c], mesh_.points_mm[d], mesh_.tissues[t] == 0);
@@ -53,7 +53,7 @@ double AngleGuard::advance(const StarSlack& star, VertexId v, Vec3 p, int halvin
   double share = 1;
   for (int n = 0; n <= halvings; ++n, share *= 0.5) {
     const Vec3 at = from + share * (p - from);
-    if (star.fits(bounds_, at)) {
+    if (star.fits(at)) {
       mesh_.points_mm[v] = at;
       return share;
     }
@@ -68,7 +68,7 @@ double AngleGuard::advance_best(VertexId v, Vec3 goal, const Mat3& metric, doubl
   const auto of_way = [&](Vec3 at) { return scale * dot(at - goal, metric * (at - goal)); };
   const auto of_slack = [](double slack) { return slack < kSpare ? (kSpare - slack) * (kSpare - slack) : 0; };
   Vec3& best = mesh_.points_mm[v];
-  double least = of_way(best) + of_slack(around.at(bounds_, best, -1));
+  double least = of_way(best) + of_slack(around.at(best, -1));
   if (share == 1 && least == 0) return 1;
   double radius = reach;
   for (int round = 0; round < kSearchRounds; ++round) {
@@ -79,7 +79,7 @@ double AngleGuard::advance_best(VertexId v, Vec3 goal, const Mat3& metric, doubl
       const double way = of_way(at);
       if (way >= least) continue;
       const double needed = std::max(0.0, kSpare - std::sqrt(least - way));
-      const double s = around.at(bounds_, at, needed);
+      const double s = around.at(at, needed);
       if (s < needed || way + of_slack(s) >= least) continue;
       best = at;
       least = way + of_slack(s);
@@ -90,15 +90,15 @@ double AngleGuard::advance_best(VertexId v, Vec3 goal, const Mat3& metric, doubl
   return share;
 }
 
-double AngleGuard::slack(VertexId v, Vec3 p, double enough) const { return star(v).at(bounds_, p, enough); }
+double AngleGuard::slack(VertexId v, Vec3 p, double enough) const { return star(v).at(p, enough); }
 
 void AngleGuard::make_even(VertexId v, Vec3 mean) const {
   const StarSlack& around = star(v);
   const Vec3 from = mesh_.points_mm[v];
-  const double before = std::max(0.0, around.at(bounds_, from, -1));
+  const double before = std::max(0.0, around.at(from, -1));
   for (const double share : {1.0, 0.3}) {
     const Vec3 at = from + share * (mean - from);
-    if (around.at(bounds_, at, before) < before) continue;
+    if (around.at(at, before) < before) continue;
     mesh_.points_mm[v] = at;
     break;
   }

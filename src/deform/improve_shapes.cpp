@@ -86,7 +86,7 @@ bool ShapeImprover::remove_face(TetId t, std::size_t opposite) {
 // The tetrahedra at v go into star_, their other vertices' mean and the shortest edge's square are returned.
 ShapeImprover::Surroundings ShapeImprover::gather(VertexId v) {
   const Vec3 at = mesh_.point(v);
-  star_.clear();
+  star_.start(bounds_, at);
   Surroundings around;
   for (const TetId t : mesh_.tets_at(v)) {
     const auto others = corners_after(mesh_.tet(t), v);
@@ -110,10 +110,10 @@ bool ShapeImprover::move_vertex(VertexId v) {
   const auto [mean, shortest2] = gather(v);
   const Vec3 from = mesh_.point(v);
   Vec3 at = from;
-  const double before = star_.at(bounds_, at, -1);
+  const double before = star_.at(at, -1);
   double best = before;
   const auto try_at = [&](Vec3 p) {
-    const double there = star_.at(bounds_, p, best + kGain);
+    const double there = star_.at(p, best + kGain);
     if (there <= best + kGain) return false;
     best = there;
     at = p;
