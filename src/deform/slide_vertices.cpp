@@ -8,6 +8,7 @@
 #include "base/vec.h"
 #include "boundary/interface_level.h"
 #include "deform/search_directions.h"
+#include "mesh/star_slack.h"
 #include "mesh/vertex_star.h"
 
 namespace anatomesh {
@@ -28,8 +29,8 @@ class Slider {
   bool visit(VertexId v, double enough);
 
  private:
+  void measure(VertexId v);
   void gather(VertexId v);
-  double worst_at(Vec3 p, double enough) const;
   bool keeps_faces(Vec3 p) const;
   double shortest_edge() const;
 
@@ -37,10 +38,20 @@ class Slider {
   const SurfaceField& field_;
   const ShapeBounds& bounds_;
   VertexStar star_;
+  StarSlack slack_;
   double near_mm_;
   std::vector<TissueId> tissues_;
   std::vector<VertexStar::Face> interface_;
 };
+
+void Slider::measure(VertexId v) {
+  slack_.start(bounds_, mesh_.point(v));
+  for (const TetId t : mesh_.tets_at(v)) {
+    const auto [b, c, d] = corners_after(mesh_.tet(t), v);
+    slack_.add(mesh_.point(b), mesh_.point(c), mesh_.point(d), mesh_.tissue(t) == 0);
+  }
+  slack_.close();
+}
 
 void Slider::gather(VertexId v) {
   star_.gather(v);
@@ -48,22 +59,6 @@ void Slider::gather(VertexId v) {
   for (const auto& tet : star_.tets()) tissues_.push_back(tet.tissue);
   std::ranges::sort(tissues_);
   tissues_.erase(std::ranges::unique(tissues_).begin(), tissues_.end());
-}
-
-// Of the tissues' tetrahedra with the centre at p; gives up below `enough`.
-double Slider::worst_at(Vec3 p, double enough) const {
-  double worst = 1;
-  for (const auto& tet : star_.tets()) {
-    std::array<Vec3, 4> c;
-    for (std::size_t n = 0; n < 4; ++n) c[n] = tet.corners[n] == 0 ? p : star_.points()[tet.corners[n]];
-    if (tet.tissue == 0) {
-      if (!within(kCushionBounds, c[0], c[1], c[2], c[3])) return -2;
-      continue;
-    }
-    worst = std::min(worst, slack(bounds_, c[0], c[1], c[2], c[3]));
-    if (worst < enough) break;
-  }
-  return worst;
 }
 
 bool Slider::keeps_faces(Vec3 p) const {
@@ -83,10 +78,11 @@ double Slider::shortest_edge() const {
 }
 
 bool Slider::visit(VertexId v, double enough) {
-  gather(v);
-  Vec3 at = star_.points()[0];
-  const double before = worst_at(at, -2);
+  measure(v);
+  Vec3 at = mesh_.point(v);
+  const double before = slack_.at(at, -2);
   if (before >= enough) return false;
+  gather(v);
   if (std::ranges::any_of(tissues_, [&](TissueId t) { return is_tiny(field_.image(), t); })) return false;
   if (on_image_border(field_.image(), at)) return false;
   interface_.clear();
@@ -101,9 +97,9 @@ bool Slider::visit(VertexId v, double enough) {
     for (const Vec3 direction : kSearchDirections) {
       // Most places are no better even before they are brought to the level exactly.
       Vec3 p = around + step * (along * direction);
-      if (worst_at(p, best + kGain) <= best + kGain) continue;
+      if (slack_.at(p, best + kGain) <= best + kGain) continue;
       for (int k = 0; k < 2; ++k) p += level.step_from(p);
-      const double there = worst_at(p, best + kGain);
+      const double there = slack_.at(p, best + kGain);
       if (there <= best + kGain || norm(level.step_from(p)) > near_mm_ || !keeps_faces(p)) continue;
       best = there;
       at = p;

@@ -39,21 +39,19 @@ std::uint8_t MeshEditor::count_tissues(VertexId v) const {
   return static_cast<std::uint8_t>(count);
 }
 
-// A vertex inside has a ball of tetrahedra around it: each face at it is there twice, in opposite orientations, and the
-// hashes of all of them, signed by orientation, add up to zero.
+// A vertex inside has a ball of tetrahedra around it: each edge opposite to it is there twice, in opposite directions,
+// and numbers that change their sign with the direction add up to zero.
 bool MeshEditor::lies_on_bare_face(VertexId v) const {
-  const auto hash = [](VertexId low, VertexId high) {
-    std::uint64_t h = (std::uint64_t{low} << 32u | high) * 0x9e3779b97f4a7c15u;
-    h = (h ^ (h >> 32u)) * 0xd6e8feb86659fd93u;
-    return h ^ (h >> 32u);
+  const auto hash = [](VertexId x) {
+    const std::uint64_t h = (std::uint64_t{x} + 1) * 0x9e3779b97f4a7c15u;
+    return h ^ (h >> 29u);
   };
+  const auto directed = [](std::uint64_t x, std::uint64_t y) { return x * y * (y - x); };
   std::uint64_t sum = 0;
   for (const TetId t : tets_at(v)) {
     const auto others = corners_after(mesh_.tets[t], v);
-    for (std::size_t n = 0; n < 3; ++n) {
-      const VertexId x = others[n], y = others[(n + 1) % 3];
-      sum += x < y ? hash(x, y) : -hash(y, x);
-    }
+    const std::uint64_t x = hash(others[0]), y = hash(others[1]), z = hash(others[2]);
+    sum += directed(x, y) + directed(y, z) + directed(z, x);
   }
   return sum != 0;
 }
