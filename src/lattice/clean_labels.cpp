@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "base/parallel.h"
@@ -23,6 +24,19 @@ TetId behind_face(const TissueMesh& mesh, const VertexLists<TetId>& tets_of_vert
     if (other != t && has(other, tet[(n + 2) % 4]) && has(other, tet[(n + 3) % 4])) return other;
   }
   return t;
+}
+
+// Those behind all faces; nothing where two of them lead to its own tissue, as then it keeps that.
+std::optional<std::array<TetId, 4>> behind_faces(const TissueMesh& mesh, const VertexLists<TetId>& tets_of_vertex,
+                                                 TetId t) {
+  std::array<TetId, 4> behind;
+  int own = 0;
+  for (std::size_t n = 0; n < 4; ++n) {
+    behind[n] = behind_face(mesh, tets_of_vertex, t, n);
+    own += mesh.tissues[behind[n]] == mesh.tissues[t];
+    if (own == 2) return {};
+  }
+  return behind;
 }
 
 // Tissue that t should take, its own if none.
@@ -60,6 +74,8 @@ void clean_labels(TissueMesh& mesh, const std::function<bool(TetId)>& may_change
     if (tissue >= tets_of_tissue.size()) tets_of_tissue.resize(tissue + 1u);
     ++tets_of_tissue[tissue];
   }
+  // Whether a tetrahedron has not been looked at since it, or one behind its faces, was relabelled.
+  std::vector<char> open(mesh.tets.size(), 1);
   for (int round = 0; round < kRounds; ++round) {
     const std::vector<char> on_interface = find_interface(tets_of_vertex, mesh.tissues);
     std::vector<char> candidate(mesh.tets.size());
@@ -69,14 +85,16 @@ void clean_labels(TissueMesh& mesh, const std::function<bool(TetId)>& may_change
     });
     bool changed = false;
     for (TetId t = 0; t < mesh.tets.size(); ++t) {
-      if (!candidate[t] || tets_of_tissue[mesh.tissues[t]] <= kMinTets) continue;
-      std::array<TetId, 4> behind;
-      for (std::size_t n = 0; n < 4; ++n) behind[n] = behind_face(mesh, tets_of_vertex, t, n);
-      const TissueId tissue = majority_behind_faces(mesh, behind, t);
+      if (!candidate[t] || !open[t] || tets_of_tissue[mesh.tissues[t]] <= kMinTets) continue;
+      open[t] = 0;
+      const auto behind = behind_faces(mesh, tets_of_vertex, t);
+      const TissueId tissue = behind ? majority_behind_faces(mesh, *behind, t) : mesh.tissues[t];
       if (tissue == mesh.tissues[t]) continue;
       --tets_of_tissue[mesh.tissues[t]];
       ++tets_of_tissue[tissue];
       mesh.tissues[t] = tissue;
+      for (const TetId other : *behind) open[other] = 1;
+      open[t] = 1;
       changed = true;
     }
     if (!changed) return;
