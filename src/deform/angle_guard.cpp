@@ -46,7 +46,9 @@ const StarSlack& AngleGuard::star(VertexId v) const {
   return star;
 }
 
-double AngleGuard::advance(VertexId v, Vec3 p, int halvings) const { return advance(star(v), v, p, halvings); }
+double AngleGuard::advance(VertexId v, Vec3 p, int halvings) const {
+  return is_fixed(v) ? 0 : advance(star(v), v, p, halvings);
+}
 
 double AngleGuard::advance(const StarSlack& star, VertexId v, Vec3 p, int halvings) const {
   const Vec3 from = mesh_.points_mm[v];
@@ -62,6 +64,7 @@ double AngleGuard::advance(const StarSlack& star, VertexId v, Vec3 p, int halvin
 }
 
 double AngleGuard::advance_best(VertexId v, Vec3 goal, const Mat3& metric, double reach) const {
+  if (is_fixed(v)) return 0;
   const StarSlack& around = star(v);
   const double share = advance(around, v, goal, 3);
   const double scale = 1 / (kReachOfEdge * kReachOfEdge * reach * reach);
@@ -93,6 +96,7 @@ double AngleGuard::advance_best(VertexId v, Vec3 goal, const Mat3& metric, doubl
 double AngleGuard::slack(VertexId v, Vec3 p, double enough) const { return star(v).at(p, enough); }
 
 void AngleGuard::make_even(VertexId v, Vec3 mean) const {
+  if (is_fixed(v)) return;
   const StarSlack& around = star(v);
   const Vec3 from = mesh_.points_mm[v];
   const double before = std::max(0.0, around.at(from, -1));

@@ -18,8 +18,10 @@ namespace anatomesh {
 /// stay positive with a little to spare.
 class AngleGuard {
  public:
-  AngleGuard(TissueMesh& mesh, const MeshTopology& topology, const ShapeBounds& bounds)
-      : mesh_(mesh), topology_(topology), bounds_(bounds) {}
+  /// fixed: by vertex, whether it stays where it is; empty: none does. Must outlive the guard.
+  AngleGuard(TissueMesh& mesh, const MeshTopology& topology, const ShapeBounds& bounds,
+             std::span<const char> fixed = {})
+      : mesh_(mesh), topology_(topology), bounds_(bounds), fixed_(fixed) {}
 
   /// Moves v towards p as far as it goes: all the way, or 1/2, 1/4, ... of it, `halvings` times. Returns
   /// the share gone, 0 if none. Neighbours of v must not move at the same time.
@@ -40,10 +42,12 @@ class AngleGuard {
  private:
   const StarSlack& star(VertexId v) const;
   double advance(const StarSlack& star, VertexId v, Vec3 p, int halvings) const;
+  bool is_fixed(VertexId v) const { return !fixed_.empty() && fixed_[v]; }
 
   TissueMesh& mesh_;
   const MeshTopology& topology_;
   ShapeBounds bounds_;
+  std::span<const char> fixed_;
 };
 
 /// Calls visit(v) for every vertex, for the runs of one colour in parallel: visit may move v and read its neighbours.

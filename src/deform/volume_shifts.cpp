@@ -49,6 +49,10 @@ struct Enclosed {
 
 }  // namespace
 
+VolumeShifts::VolumeShifts(const TissueImage& image) : image_(image), by_low_(image.labels.size()) {
+  for (std::size_t t = 0; t < image.labels.size(); ++t) wanted_mm3_.push_back(image.volume_mm3(t));
+}
+
 VolumeShifts::Shift& VolumeShifts::shift_of(TissueId low, TissueId high) {
   auto& list = by_low_[low];
   const auto known = std::ranges::find(list, high, &Shift::high);
@@ -64,7 +68,7 @@ void VolumeShifts::update(const TissueMesh& mesh, const InterfaceFaces& interfac
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     for (std::size_t t = 1; t < tissues; ++t) {
       if (now.area_mm2[t] == 0) continue;
-      double sum = image_.volume_mm3(t) - now.volume_mm3[t];
+      double sum = wanted_mm3_[t] - now.volume_mm3[t];
       for (const Contact& c : now.contacts[t]) sum += c.area_mm2 * growth_mm[c.other];
       growth_mm[t] = sum / now.area_mm2[t];
     }
@@ -78,6 +82,10 @@ void VolumeShifts::update(const TissueMesh& mesh, const InterfaceFaces& interfac
       shift = std::clamp(shift + kDamping * (growth_mm[low] - growth_mm[c.other]), -most, most);
     }
   }
+}
+
+std::vector<double> enclosed_volumes(const TissueMesh& mesh, const InterfaceFaces& interfaces, std::size_t tissues) {
+  return Enclosed(mesh, interfaces, tissues).volume_mm3;
 }
 
 double VolumeShifts::between(TissueId low, TissueId high) const {

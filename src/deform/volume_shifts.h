@@ -1,6 +1,7 @@
 // How far the boundaries have to be shifted for the tissues to have the volumes of their voxels.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "deform/interface_faces.h"
@@ -12,7 +13,12 @@ namespace anatomesh {
 /// lacks.
 class VolumeShifts {
  public:
-  explicit VolumeShifts(const TissueImage& image) : image_(image), by_low_(image.labels.size()) {}
+  explicit VolumeShifts(const TissueImage& image);
+
+  /// The same for a part of a mesh whose tissues go on beyond it: wanted_mm3 are enclosed_volumes() as they are to
+  /// become, by tissue.
+  VolumeShifts(const TissueImage& image, std::vector<double> wanted_mm3)
+      : image_(image), wanted_mm3_(std::move(wanted_mm3)), by_low_(image.labels.size()) {}
 
   /// Corrects the shifts by what the tissues lack in the mesh as it is. Cost: linear in the faces, and for
   /// each in the number of tissues that its lower tissue touches.
@@ -30,7 +36,12 @@ class VolumeShifts {
   Shift& shift_of(TissueId low, TissueId high);
 
   const TissueImage& image_;
+  std::vector<double> wanted_mm3_;
   std::vector<std::vector<Shift>> by_low_;
 };
+
+/// What the interface faces say of each tissue's volume (mm^3), by the divergence theorem. In a part of a mesh it is off
+/// by what the cut would add, which stays the same as long as the cut does.
+std::vector<double> enclosed_volumes(const TissueMesh& mesh, const InterfaceFaces& interfaces, std::size_t tissues);
 
 }  // namespace anatomesh

@@ -139,4 +139,25 @@ TissueImage make_tissue_image(const LabelImage& image, const std::vector<Label>&
   return tissues;
 }
 
+TissueImage part_of(const TissueImage& image, const std::array<std::int64_t, 3>& first, const std::array<int, 3>& size) {
+  TissueImage part;
+  part.size = size;
+  part.first = first;
+  part.whole = image.whole;
+  part.spacing_mm = image.spacing_mm;
+  part.labels = image.labels;
+  part.counts = image.counts;
+  part.voxels.reserve(static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) *
+                      static_cast<std::size_t>(size[2]));
+  std::array<int, 3> shift;
+  for (std::size_t a = 0; a < 3; ++a) shift[a] = static_cast<int>(first[a] - image.first[a]);
+  for (int k = 0; k < size[2]; ++k) {
+    for (int j = 0; j < size[1]; ++j) {
+      for (int i = 0; i < size[0]; ++i)
+        part.voxels.push_back(image.at_or_background(i + shift[0], j + shift[1], k + shift[2]));
+    }
+  }
+  return part;
+}
+
 }  // namespace anatomesh

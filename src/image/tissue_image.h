@@ -74,4 +74,8 @@ struct TissueImage {
 /// InvalidInput when all is background, or for more than 65,535 labels or 4e9 voxels. Cost: two passes over the voxels.
 TissueImage make_tissue_image(const LabelImage& image, const std::vector<Label>& chosen = {});
 
+/// A box of an image, voxels first to first + size of the original one, which may lie beyond the crop: background
+/// there. counts stay those of the whole.
+TissueImage part_of(const TissueImage& image, const std::array<std::int64_t, 3>& first, const std::array<int, 3>& size);
+
 }  // namespace anatomesh

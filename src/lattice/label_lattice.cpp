@@ -91,6 +91,7 @@ class LabelLattice::Impl {
 
   LabelledLattice build(const Stage& stage);
   std::optional<LabelledLattice> refine(const FidelityGap& gap, const Stage& stage);
+  TissueMesh background() const;
 
  private:
   std::vector<TetRef> leaves_wanted(const std::vector<Demand>& asked) const;
@@ -369,6 +370,11 @@ std::optional<LabelledLattice> LabelLattice::Impl::refine(const FidelityGap& gap
   return make_whole(stage);
 }
 
+TissueMesh LabelLattice::Impl::background() const {
+  LeafMesher whole(lattice_, votes_, place_.origin_mm, place_.unit_mm);
+  return without_cushion(whole.mesh(leaves_.list(), LeafMesher::Bulk::all).mesh);
+}
+
 LabelLattice::LabelLattice(const TissueImage& image, const LatticePlan& plan)
     : impl_(std::make_unique<Impl>(image, plan)) {}
 LabelLattice::~LabelLattice() = default;
@@ -376,5 +382,6 @@ LabelledLattice LabelLattice::build(const Stage& stage) { return impl_->build(st
 std::optional<LabelledLattice> LabelLattice::refine(const FidelityGap& gap, const Stage& stage) {
   return impl_->refine(gap, stage);
 }
+TissueMesh LabelLattice::background() const { return impl_->background(); }
 
 }  // namespace anatomesh

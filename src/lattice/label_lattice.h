@@ -26,6 +26,7 @@ struct LatticePlan {
   const SizeField* sizes =
       nullptr;                      ///< tetrahedra with longer edges are refined; null: none are. Must outlive the plan
   bool allow_non_manifold = false;  ///< leaves the tissues' surfaces as the labels make them
+  bool keeps_background = false;    ///< background() will be asked for
 };
 
 /// Fidelity of one tissue (section "fidelity" of the paper): S1 is the set of voxels in its tetrahedra, S2 the set of
@@ -73,6 +74,10 @@ class LabelLattice {
   /// and those around missed voxels until they have their label, and labels the lattice again. Nothing when all of them
   /// are of the smallest size. Throws Cancelled.
   std::optional<LabelledLattice> refine(const FidelityGap& gap, const Stage& stage);
+
+  /// The background beyond the cushion of the lattice as it is now: together with the cushion it fills the lattice's
+  /// outline. Where the two meet, vertices have the same coordinates. Cost: linear in the leaves.
+  TissueMesh background() const;
 
  private:
   class Impl;

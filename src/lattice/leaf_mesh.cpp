@@ -29,11 +29,11 @@ std::array<LatticePoint, 10> nodes_of(const RedGreenLattice& lattice, TetRef lea
 
 }  // namespace
 
-LeafMesh LeafMesher::mesh(const std::vector<LabelledLeaf>& leaves) {
+LeafMesh LeafMesher::mesh(const std::vector<LabelledLeaf>& leaves, Bulk wanted) {
   places_.resize(static_cast<std::size_t>(lattice_.max_level()) + 1);
   for (int level = 0; level <= lattice_.max_level(); ++level)
     places_[static_cast<std::size_t>(level)].resize(lattice_.slot_count(level));
-  std::vector<Entry> entries = make_entries(leaves);
+  std::vector<Entry> entries = make_entries(leaves, wanted);
   Tets added;
   for (std::size_t i = 0; i < leaves.size(); ++i) {
     if (entries[i].bulk) continue;
@@ -51,7 +51,7 @@ LeafMesh LeafMesher::mesh(const std::vector<LabelledLeaf>& leaves) {
   return result;
 }
 
-std::vector<LeafMesher::Entry> LeafMesher::make_entries(const std::vector<LabelledLeaf>& leaves) const {
+std::vector<LeafMesher::Entry> LeafMesher::make_entries(const std::vector<LabelledLeaf>& leaves, Bulk wanted) const {
   std::vector<Entry> entries(leaves.size());
   parallel_for(leaves.size(), [&](std::size_t i) {
     const LabelledLeaf& leaf = leaves[i];
@@ -59,7 +59,7 @@ std::vector<LeafMesher::Entry> LeafMesher::make_entries(const std::vector<Labell
     Entry& entry = entries[i];
     entry.bulk = leaf.votes[0].tissue == 0 && !leaf.decided && votes_.hands_label_down(leaf.tet);
     entry.known = place.first_tet != kNone && place.split_edges == leaf.split_edges;
-    entry.wanted = !entry.bulk || entry.known;
+    entry.wanted = !entry.bulk || entry.known || wanted == Bulk::all;
   });
   return entries;
 }
@@ -147,7 +147,10 @@ void LeafMesher::place_vertices(LeafMesh& result) const {
   });
 }
 
-TissueMesh with_cushion_only(TissueMesh mesh) {
+namespace {
+
+// The tetrahedra that touch a tissue, or the others.
+TissueMesh part_of(TissueMesh mesh, bool touching) {
   std::vector<char> on_tissue(mesh.points_mm.size());
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
     if (mesh.tissues[t] == 0) continue;
@@ -156,7 +159,7 @@ TissueMesh with_cushion_only(TissueMesh mesh) {
   std::size_t kept = 0;
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
     const auto& tet = mesh.tets[t];
-    if (std::none_of(tet.begin(), tet.end(), [&](VertexId v) { return on_tissue[v]; })) continue;
+    if (std::any_of(tet.begin(), tet.end(), [&](VertexId v) { return on_tissue[v]; }) != touching) continue;
     mesh.tets[kept] = tet;
     mesh.tissues[kept++] = mesh.tissues[t];
   }
@@ -164,5 +167,11 @@ TissueMesh with_cushion_only(TissueMesh mesh) {
   mesh.tissues.resize(kept);
   return with_cushion_last(mesh);
 }
+
+}  // namespace
+
+TissueMesh with_cushion_only(TissueMesh mesh) { return part_of(std::move(mesh), true); }
+
+TissueMesh without_cushion(TissueMesh mesh) { return part_of(std::move(mesh), false); }
 
 }  // namespace anatomesh

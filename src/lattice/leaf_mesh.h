@@ -32,7 +32,10 @@ class LeafMesher {
   LeafMesher(const RedGreenLattice& lattice, const VoxelVotes& votes, Vec3 origin_mm, double unit_mm)
       : lattice_(lattice), votes_(votes), origin_mm_(origin_mm), unit_mm_(unit_mm) {}
 
-  LeafMesh mesh(const std::vector<LabelledLeaf>& leaves);
+  /// How much is made of large background tetrahedra.
+  enum class Bulk { near, all };
+
+  LeafMesh mesh(const std::vector<LabelledLeaf>& leaves, Bulk wanted = Bulk::near);
 
   /// The first tetrahedron of a leaf in the last mesh, or TetComplex::kNone.
   TetId first_tet(TetRef leaf) const { return place_of(leaf).first_tet; }
@@ -53,7 +56,7 @@ class LeafMesher {
 
   Place& place_of(TetRef leaf) { return places_[static_cast<std::size_t>(leaf.level)][leaf.slot]; }
   const Place& place_of(TetRef leaf) const { return places_[static_cast<std::size_t>(leaf.level)][leaf.slot]; }
-  std::vector<Entry> make_entries(const std::vector<LabelledLeaf>& leaves) const;
+  std::vector<Entry> make_entries(const std::vector<LabelledLeaf>& leaves, Bulk wanted) const;
   void want_bulk_near(const std::vector<LabelledLeaf>& leaves, std::vector<Entry>& entries) const;
   void add(const LabelledLeaf& leaf, Entry& entry, Tets& added);
   void mark_near(const LabelledLeaf& leaf, const Entry& entry, const Tets& added);
@@ -72,5 +75,8 @@ class LeafMesher {
 
 /// The tissues, and of the background the tetrahedra that touch a tissue, these last.
 TissueMesh with_cushion_only(TissueMesh mesh);
+
+/// The rest of the background.
+TissueMesh without_cushion(TissueMesh mesh);
 
 }  // namespace anatomesh

@@ -276,6 +276,7 @@ void PieceMender::dissolve_empty_pieces() {
 
 // Gives a piece to the neighbour behind most of its faces.
 void PieceMender::dissolve(const std::vector<TetId>& tets) {
+  if (std::any_of(tets.begin(), tets.end(), [&](TetId t) { return contents_.fixed[t] != 0; })) return;
   std::map<TissueId, std::uint32_t> faces;
   for (const TetId t : tets) {
     for (const TetId other : complex_.behind[t]) {

@@ -207,6 +207,9 @@ Pieces find_pieces(const TetComplex& complex) {
       if (other < t && tissues[other] == tissues[t]) sets.join(static_cast<TetId>(t), other);
     }
   });
+  for (const auto& [a, b] : complex.joined_beyond) {
+    if (tissues[a] == tissues[b] && tissues[a] != 0) sets.join(a, b);
+  }
   Pieces pieces;
   pieces.of_tet.assign(tissues.size(), Pieces::kNone);
   list_roots(tissues, sets, pieces);

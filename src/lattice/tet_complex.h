@@ -19,6 +19,8 @@ struct TetComplex {
   VertexLists<TetId> tets_of_vertex;
   /// behind[t][n]: the tetrahedron behind the face of t opposite to its corner n, or t itself at the mesh's border.
   std::vector<std::array<TetId, 4>> behind;
+  /// Of a part of a mesh: pairs of tetrahedra that hang together beyond it as long as they have the same tissue.
+  std::vector<std::array<TetId, 2>> joined_beyond;
 
   TissueId tissue(TetId t) const { return mesh.tissues[t]; }
 };

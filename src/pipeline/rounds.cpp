@@ -198,7 +198,8 @@ DeformedMesh Rounds::finish(TissueMesh mesh, std::size_t target) const {
   deformer_.finish(mesh, improvement, stage);
   MeshFidelity reached = measure_fidelity(mesh, image_, stage);
   stage_done_("improve");
-  return {std::move(mesh), lattice_.fidelity, std::move(reached), plan_.bcc_size_mm};
+  TissueMesh beyond = plan_.keeps_background ? builder_->background() : TissueMesh{};
+  return {std::move(mesh), std::move(beyond), lattice_.fidelity, std::move(reached), plan_.bcc_size_mm};
 }
 
 // Whether so much of a tissue's boundary lies far from the mesh's that it shows in the distances.

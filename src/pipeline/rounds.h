@@ -17,6 +17,7 @@ namespace anatomesh {
 /// A deformed mesh and its fidelity, by tissue.
 struct DeformedMesh {
   TissueMesh mesh;                ///< with its cushion
+  TissueMesh beyond;              ///< the background around that, as the plan asks
   std::vector<Fidelity> lattice;  ///< of the lattice it was deformed from
   MeshFidelity final;             ///< of the mesh itself
   double root_mm = 0;             ///< spacing of that lattice's root

@@ -1,0 +1,359 @@
+#include "pipeline/local_update.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <cstdio>
+#include <chrono>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "base/parallel.h"
+#include "base/vec.h"
+#include "boundary/surface_field.h"
+#include "deform/angle_guard.h"
+#include "deform/coarsen.h"
+#include "deform/flip_interfaces.h"
+#include "deform/improve_shapes.h"
+#include "deform/interface_faces.h"
+#include "deform/refine_edges.h"
+#include "deform/settle.h"
+#include "deform/slide_vertices.h"
+#include "deform/volume_shifts.h"
+#include "image/boundary_area.h"
+#include "image/components.h"
+#include "mesh/adjacency.h"
+#include "mesh/mesh_editor.h"
+#include "mesh/tet_shape.h"
+#include "pipeline/final_fidelity.h"
+#include "pipeline/patch_labels.h"
+#include "pipeline/patch_sizes.h"
+
+namespace anatomesh {
+namespace {
+
+constexpr int kReachBlocks = 2;  // of a change around it, blocks of voxels
+constexpr int kRings = 2;        // of tetrahedra around those that it reaches
+constexpr int kMargin = 6;       // voxels around the patch that the field looks at
+
+bool trace() {
+  static const bool on = std::getenv("REMESH_TRACE") != nullptr;
+  return on;
+}
+struct Clock {
+  std::chrono::steady_clock::time_point t = std::chrono::steady_clock::now();
+  void lap(const char* what, std::size_t n = 0) {
+    const auto now = std::chrono::steady_clock::now();
+    if (trace()) std::fprintf(stderr, "  %-18s %8.1f ms  %zu\n", what, 1e3 * std::chrono::duration<double>(now - t).count(), n);
+    t = now;
+  }
+};
+
+ShapeBounds bounds_of(const DeformOptions& o) {
+  return ShapeBounds::from_degrees(o.min_dihedral_deg, o.max_dihedral_deg, o.min_mean_ratio);
+}
+
+// The box of the image that a patch takes.
+TissueImage box_around(const TissueImage& image, const TissueMesh& mesh) {
+  std::array<std::int64_t, 3> first;
+  std::array<int, 3> size;
+  for (std::size_t a = 0; a < 3; ++a) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const Vec3& p : mesh.points_mm) {
+      low = std::min(low, p[a]);
+      high = std::max(high, p[a]);
+    }
+    first[a] = static_cast<std::int64_t>(std::floor(low / image.spacing_mm[a])) - kMargin;
+    size[a] = static_cast<int>(static_cast<std::int64_t>(std::ceil(high / image.spacing_mm[a])) + kMargin + 1 - first[a]);
+  }
+  return part_of(image, first, size);
+}
+
+// By voxel of a box: changed, or next to one that is.
+std::vector<char> mark_changed(const TissueImage& part, const ImageChange& change) {
+  std::vector<char> marked(part.voxels.size(), 0);
+  for (const auto& voxel : change.voxels) {
+    std::array<int, 3> at;
+    for (std::size_t a = 0; a < 3; ++a) at[a] = static_cast<int>(voxel[a] - part.first[a]);
+    for (int n = 0; n < 27; ++n) {
+      const int i = at[0] + n % 3 - 1, j = at[1] + n / 3 % 3 - 1, k = at[2] + n / 9 - 1;
+      if (part.contains(i, j, k)) marked[part.offset(i, j, k)] = 1;
+    }
+  }
+  return marked;
+}
+
+void give_number(TissueMesh& mesh, TissueId from, TissueId to) {
+  std::ranges::replace(mesh.tissues, from, to);
+}
+
+class LocalUpdate {
+ public:
+  LocalUpdate(KeptMesh& kept, const ImageChange& change, const Options& options, std::vector<double> wanted,
+              const Stage& stage)
+      : kept_(kept),
+        change_(change),
+        wanted_(std::move(wanted)),
+        bounds_(bounds_of(options.deform)),
+        stage_(stage),
+        tissues_(change.after.labels.size()) {}
+
+  LocalResult run();
+
+ private:
+  void choose_sizes(double factor);
+  std::vector<double> wanted_volumes() const;
+  void refine();
+  bool relabel();
+  void deform();
+  void improve();
+  void settle_here(int sweeps);
+  void as_tissue(bool background_too) {
+    if (background_too) give_number(mesh_, 0, air_);
+    else give_number(mesh_, air_, 0);
+  }
+  std::string fault() const;
+  std::vector<Fidelity> updated(const std::vector<Fidelity>& all, const std::vector<Fidelity>& before,
+                                const std::vector<Fidelity>& after) const;
+
+  KeptMesh& kept_;
+  const ImageChange& change_;
+  std::vector<double> wanted_;
+  ShapeBounds bounds_;
+  const Stage& stage_;
+  std::size_t tissues_;
+  TissueId air_ = 0;  // the number of the background while it counts as a tissue
+  MeshPatch patch_;
+  TissueMesh mesh_;
+  TissueImage part_;
+  std::optional<SurfaceField> field_;
+  std::optional<VolumeShifts> shifts_;
+  std::vector<char> is_changed_;
+  std::vector<double> surface_mm_;
+  Clock clock_;
+};
+
+// A tissue that the image has had before keeps the size of its surface, unless it has become thinner; a new one has
+// what image_to_mesh() would begin with.
+void LocalUpdate::choose_sizes(double factor) {
+  constexpr double kWrongShare = 0.006, kLayer = 0.08, kEdge = 0.9;
+  const TissueImage& image = change_.after;
+  const std::vector<double> area = boundary_areas_mm2(image);
+  const Vec3 s = image.spacing_mm;
+  surface_mm_ = kept_.surface_mm;
+  surface_mm_.resize(tissues_, 0);
+  for (std::size_t t = 1; t < tissues_; ++t) {
+    if (image.counts[t] == 0) continue;
+    const double thick = image.volume_mm3(t) / area[t];
+    double wrong = std::max(1e-3, 1 - wanted_[t]);
+    wrong = std::min(wrong, wrong / 0.05 * kLayer * std::max({s.x, s.y, s.z}) / thick);
+    const double size = kEdge * std::sqrt(wrong / kWrongShare) * thick;
+    if (surface_mm_[t] == 0 || size < surface_mm_[t]) surface_mm_[t] = std::max(size, std::min({s.x, s.y, s.z}));
+    surface_mm_[t] *= factor;
+  }
+}
+
+// The patch's tissues gain or lose what the image's do. Where the mesh was off by much, it is to be less.
+std::vector<double> LocalUpdate::wanted_volumes() const {
+  constexpr double kMuch = 0.003;
+  const MeshTopology topology = make_topology(patch_.mesh);
+  std::vector<double> wanted =
+      enclosed_volumes(patch_.mesh, find_interface_faces(patch_.mesh, topology, part_), tissues_);
+  for (std::size_t t = 1; t < tissues_; ++t) {
+    wanted[t] += change_.after.volume_mm3(t) - change_.before.volume_mm3(t);
+    const double off = kept_.volume_mm3[t] - change_.before.volume_mm3(t), may = kMuch * change_.after.volume_mm3(t);
+    wanted[t] -= off > may ? off - may : off < -may ? off + may : 0;
+  }
+  return wanted;
+}
+
+// With the background as a tissue, so that it can become one.
+void LocalUpdate::refine() {
+  const PatchSizes sizes(part_, surface_mm_, is_changed_);
+  as_tissue(true);
+  MeshEditor editor(mesh_);
+  const std::size_t splits = refine_edges(editor, bounds_, [&](Vec3 p) { return sizes.at(p); }, stage_);
+  mesh_ = editor.result();
+  as_tissue(false);
+  clock_.lap("refine", splits);
+}
+
+bool LocalUpdate::relabel() {
+  vote(mesh_, part_, is_changed_, bounds_);
+  clock_.lap("vote", mesh_.tets.size());
+  std::vector<char> counted(tissues_, 0);
+  for (const TissueId t : patch_.mesh.tissues) counted[t] = 1;
+  for (const TissueId t : mesh_.tissues) counted[t] = 1;
+  for (std::size_t v = 0; v < is_changed_.size(); ++v) {
+    if (is_changed_[v]) counted[part_.voxels[v]] = 1;
+  }
+  const RestPieces rest = find_rest_pieces(kept_.mesh, patch_, std::move(counted));
+  clock_.lap("rest");
+  const ImageComponents components(change_.after);
+  clock_.lap("components");
+  const LabelMending mending = {change_.after, components, part_, rest, patch_.mesh.points_mm, bounds_};
+  const bool mended = mend_labels(mesh_, mending, stage_);
+  clock_.lap("mend", mesh_.tets.size());
+  return mended;
+}
+
+void LocalUpdate::settle_here(int sweeps) {
+  const std::vector<char> fixed = border_vertices(mesh_);
+  const MeshTopology topology = make_topology(mesh_);
+  const AngleGuard guard(mesh_, topology, bounds_, fixed);
+  settle(mesh_, topology, guard, *field_, sweeps, *shifts_, stage_);
+  clock_.lap("settle", mesh_.tets.size());
+}
+
+void LocalUpdate::deform() {
+  MeshEditor editor(mesh_);
+  const std::size_t splits = split_bridges(editor, bounds_, stage_);
+  mesh_ = in_spatial_order(editor.result());
+  clock_.lap("bridges", splits);
+  settle_here(6);
+}
+
+// As improve() does for a whole mesh.
+void LocalUpdate::improve() {
+  constexpr double kEnoughSlack = 0.03, kSlidingSlack = 0.02;
+  const auto coarsen_to = [&](const ShapeBounds& bounds) {
+    as_tissue(true);
+    MeshEditor editor(mesh_);
+    CoarsenLimits limits;
+    limits.bounds = bounds;
+    coarsen(editor, *field_, limits, 10, stage_);
+    improve_shapes(editor, bounds_, kEnoughSlack, stage_);
+    mesh_ = editor.result();
+    as_tissue(false);
+  };
+  coarsen_to(ShapeBounds::from_degrees(28, 142, 0.3));
+  clock_.lap("coarsen", mesh_.tets.size());
+  for (int n = 0; n < 3; ++n) {
+    MeshEditor editor(mesh_);
+    flip_interfaces(editor, *field_, bounds_, stage_);
+    improve_shapes(editor, bounds_, kEnoughSlack, stage_);
+    mesh_ = editor.result();
+    clock_.lap("flips", mesh_.tets.size());
+    settle_here(4);
+  }
+  for (int n = 0; n < 2; ++n) coarsen_to(bounds_);
+  MeshEditor editor(mesh_);
+  for (int n = 0; n < 2; ++n) {
+    slide_vertices(editor, *field_, bounds_, kSlidingSlack, stage_);
+    improve_shapes(editor, bounds_, kEnoughSlack, stage_);
+  }
+  mesh_ = editor.result();
+  clock_.lap("finish", mesh_.tets.size());
+}
+
+std::string LocalUpdate::fault() const {
+  for (TetId t = 0; t < mesh_.tets.size(); ++t) {
+    const auto& [a, b, c, d] = mesh_.tets[t];
+    if (mesh_.tissues[t] != 0 &&
+        !within(bounds_, mesh_.points_mm[a], mesh_.points_mm[b], mesh_.points_mm[c], mesh_.points_mm[d]))
+      return "a tetrahedron is outside its bounds";
+  }
+  return {};
+}
+
+std::vector<Fidelity> LocalUpdate::updated(const std::vector<Fidelity>& all, const std::vector<Fidelity>& before,
+                                           const std::vector<Fidelity>& after) const {
+  std::vector<Fidelity> result = all;
+  result.resize(tissues_);
+  for (std::size_t t = 1; t < tissues_; ++t) {
+    result[t].in_tets = result[t].in_tets + after[t].in_tets - before[t].in_tets;
+    result[t].hits = result[t].hits + after[t].hits - before[t].hits;
+    result[t].voxels = change_.after.counts[t];
+  }
+  return result;
+}
+
+std::vector<double> volumes_of(const TissueMesh& mesh, std::size_t tissues) {
+  std::vector<double> volume(tissues, 0);
+  for (TetId t = 0; t < mesh.tets.size(); ++t) {
+    const auto& [a, b, c, d] = mesh.tets[t];
+    volume[mesh.tissues[t]] +=
+        six_volumes(mesh.points_mm[a], mesh.points_mm[b], mesh.points_mm[c], mesh.points_mm[d]) / 6;
+  }
+  return volume;
+}
+
+LocalResult LocalUpdate::run() {
+  air_ = static_cast<TissueId>(tissues_);
+  VoxelBlocks blocks(change_.box);
+  for (const auto& voxel : change_.voxels) blocks.add(voxel);
+  blocks.dilate(kReachBlocks);
+  patch_ = take_patch(kept_.mesh, blocks, change_.after.spacing_mm, kRings);
+  mesh_ = patch_.mesh;
+  clock_.lap("patch", mesh_.tets.size());
+  part_ = box_around(change_.after, mesh_);
+  is_changed_ = mark_changed(part_, change_);
+  clock_.lap("part", part_.voxels.size());
+  field_.emplace(part_);
+  clock_.lap("field", part_.voxels.size());
+  shifts_.emplace(part_, wanted_volumes());
+  clock_.lap("volumes");
+  choose_sizes(1);
+  clock_.lap("sizes");
+  refine();
+  if (!relabel()) return {"the labels could not be mended", 0};
+  deform();
+  improve();
+  if (std::string why = fault(); !why.empty()) return {why, 0};
+  const TissueImage old = box_around(change_.before, patch_.mesh);
+  const MeshFidelity before = measure_fidelity(patch_.mesh, old, stage_), after = measure_fidelity(mesh_, part_, stage_);
+  KeptMesh next;
+  next.fidelity = updated(kept_.fidelity, before.tissues, after.tissues);
+  next.inside = updated(kept_.inside, before.inside, after.inside);
+  clock_.lap("fidelity");
+  if (trace()) {
+    for (std::size_t t = 1; t < tissues_; ++t)
+      std::fprintf(stderr, "  t %zu F1 %.4f F2 %.4f before %.4f %.4f\n", t, next.fidelity[t].f1(), next.fidelity[t].f2(),
+                   t < kept_.fidelity.size() ? kept_.fidelity[t].f1() : 0, t < kept_.fidelity.size() ? kept_.fidelity[t].f2() : 0);
+  }
+  const auto v0 = volumes_of(patch_.mesh, tissues_), v1 = volumes_of(mesh_, tissues_);
+  for (std::size_t t = 0; t < tissues_; ++t) kept_.volume_mm3[t] += v1[t] - v0[t];
+  kept_.fidelity = next.fidelity;
+  kept_.inside = next.inside;
+  kept_.surface_mm = surface_mm_;
+  put_patch(kept_.mesh, patch_, mesh_);
+  clock_.lap("put");
+  return {"", tissue_tets(mesh_)};
+}
+
+}  // namespace
+
+void measure_kept(KeptMesh& kept, std::size_t tissues) {
+  kept.volume_mm3 = volumes_of(kept.mesh, tissues);
+  const TissueMesh& mesh = kept.mesh;
+  constexpr TissueId kNone = 0xffff;
+  std::vector<TissueId> first(mesh.points_mm.size(), kNone);
+  std::vector<char> on_interface(mesh.points_mm.size(), 0);
+  for (TetId t = 0; t < mesh.tets.size(); ++t) {
+    for (const VertexId v : mesh.tets[t]) {
+      if (first[v] == kNone) first[v] = mesh.tissues[t];
+      on_interface[v] = on_interface[v] || first[v] != mesh.tissues[t];
+    }
+  }
+  std::vector<double> sum(tissues, 0), count(tissues, 0);
+  for (TetId t = 0; t < mesh.tets.size(); ++t) {
+    const auto& tet = mesh.tets[t];
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t j = i + 1; j < 4; ++j) {
+        if (!on_interface[tet[i]] || !on_interface[tet[j]]) continue;
+        sum[mesh.tissues[t]] += norm(mesh.points_mm[tet[i]] - mesh.points_mm[tet[j]]);
+        ++count[mesh.tissues[t]];
+      }
+    }
+  }
+  kept.surface_mm.assign(tissues, 0);
+  for (std::size_t t = 1; t < tissues; ++t) kept.surface_mm[t] = count[t] > 0 ? sum[t] / count[t] : 0;
+}
+
+LocalResult update_locally(KeptMesh& kept, const ImageChange& change, const Options& options,
+                           std::vector<double> wanted, const Stage& stage) {
+  return LocalUpdate(kept, change, options, std::move(wanted), stage).run();
+}
+
+}  // namespace anatomesh

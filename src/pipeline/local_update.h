@@ -1,0 +1,48 @@
+// Re-meshing where the image has changed, and there only.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "anatomesh/options.h"
+#include "base/stage.h"
+#include "image/tissue_image.h"
+#include "lattice/label_lattice.h"
+#include "mesh/tissue_mesh.h"
+#include "pipeline/mesh_patch.h"
+
+namespace anatomesh {
+
+/// A finished mesh with its background, and what is known of it, by tissue.
+struct KeptMesh {
+  TissueMesh mesh;
+  std::vector<Fidelity> fidelity;   ///< voxels may be off in a mesh that has been updated: see describe
+  std::vector<Fidelity> inside;     ///< the same of the centres inside the original image alone
+  std::vector<double> volume_mm3;   ///< of its tetrahedra
+  std::vector<double> surface_mm;   ///< mean length of the edges along its surface
+};
+
+/// Volumes and surface_mm of a mesh. Cost: some passes over it.
+void measure_kept(KeptMesh& kept, std::size_t tissues);
+
+/// Where two images of the same grid and numbering of tissues differ.
+struct ImageChange {
+  const TissueImage& before;
+  const TissueImage& after;
+  std::vector<std::array<std::int64_t, 3>> voxels;  ///< indices in the original image, ascending
+  IndexBox box;                                     ///< around them
+};
+
+struct LocalResult {
+  std::string failure;           ///< why the mesh could not be mended locally; empty: it was, and `kept` is up to date
+  std::size_t new_tets = 0;      ///< tetrahedra in the place of the old ones there, without the background
+};
+
+/// Brings the mesh up to date with the image. wanted: F by tissue. Leaves `kept` as it was where it fails. Throws
+/// Cancelled, which leaves it so, too.
+LocalResult update_locally(KeptMesh& kept, const ImageChange& change, const Options& options,
+                           std::vector<double> wanted, const Stage& stage);
+
+}  // namespace anatomesh

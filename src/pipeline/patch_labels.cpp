@@ -1,0 +1,309 @@
+#include "pipeline/patch_labels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <span>
+#include <utility>
+
+#include "base/parallel.h"
+#include "base/vec.h"
+#include "boundary/label_field.h"
+#include "deform/refine_edges.h"
+#include "lattice/clean_labels.h"
+#include "lattice/mend_pieces.h"
+#include "lattice/mend_surfaces.h"
+#include "mesh/mesh_editor.h"
+#include "mesh/voxel_owners.h"
+
+namespace anatomesh {
+namespace {
+
+constexpr int kMaxRounds = 8;
+constexpr double kMaxPrice = 5;          // voxels that a relabelled tetrahedron may cost
+constexpr std::size_t kMaxGroup = 400;   // tetrahedra given to one tissue as the last resort
+constexpr float kSmallest = 0.02f;       // voxels; smaller tetrahedra are not split
+constexpr int kFewPoints = 3, kManyPoints = 8;
+
+std::array<Vec3, 4> corners_of(const TissueMesh& mesh, TetId t) {
+  std::array<Vec3, 4> p;
+  for (std::size_t n = 0; n < 4; ++n) p[n] = mesh.points_mm[mesh.tets[t][n]];
+  return p;
+}
+
+double volume_of(const TissueMesh& mesh, TetId t) {
+  const auto [a, b, c, d] = corners_of(mesh, t);
+  return six_volumes(a, b, c, d) / 6;
+}
+
+bool is_within(const TissueMesh& mesh, TetId t, const ShapeBounds& bounds) {
+  const auto [a, b, c, d] = corners_of(mesh, t);
+  return within(bounds, a, b, c, d);
+}
+
+// Calls visit(p) for points spread evenly over a tetrahedron, n (n + 1) (n + 2) / 6 of them.
+template <class Visit>
+void for_each_point(const std::array<Vec3, 4>& corners, int n, const Visit& visit) {
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; i + j < n; ++j) {
+      for (int k = 0; i + j + k < n; ++k) {
+        const std::array<int, 4> share = {i, j, k, n - 1 - i - j - k};
+        Vec3 p;
+        for (std::size_t c = 0; c < 4; ++c) p += (share[c] + 0.25) / n * corners[c];
+        visit(p);
+      }
+    }
+  }
+}
+
+// The voter for one tetrahedron; its own tissue where no changed voxel is near.
+TissueId voted(const TissueMesh& mesh, TetId t, const LabelField& field, const std::vector<char>& is_changed,
+               bool& asked) {
+  const TissueImage& image = field.image();
+  const auto corners = corners_of(mesh, t);
+  const double voxel_mm = std::cbrt(image.spacing_mm.x * image.spacing_mm.y * image.spacing_mm.z);
+  double longest = 0;
+  for (const Vec3& p : corners) longest = std::max(longest, norm(p - corners[0]));
+  const int n = std::clamp(static_cast<int>(std::ceil(longest / voxel_mm)), kFewPoints, kManyPoints);
+  asked = false;
+  for_each_point(corners, n, [&](Vec3 p) {
+    const auto [i, j, k] = image.index_at(p);
+    asked = asked || (image.contains(i, j, k) && is_changed[image.offset(i, j, k)]);
+  });
+  if (!asked) return mesh.tissues[t];
+  std::map<TissueId, int> votes;
+  for_each_point(corners, n, [&](Vec3 p) { ++votes[field.label_at(p)]; });
+  // Of equal ones its own, then the lowest.
+  TissueId best = mesh.tissues[t];
+  for (const auto& [tissue, count] : votes) {
+    if (count > votes[best]) best = tissue;
+  }
+  return best;
+}
+
+class PatchMender {
+ public:
+  PatchMender(TissueMesh& mesh, const LabelMending& mending) : mesh_(mesh), mending_(mending) {
+    for (VertexId v = 0; v < mending.border_mm.size(); ++v) {
+      const Vec3& p = mending.border_mm[v];
+      border_.emplace(std::array{p.x, p.y, p.z}, v);
+    }
+    for (const auto& contact : mending.rest.contacts) contacts_[contact.vertex].push_back(contact);
+  }
+
+  bool run(const Stage& stage) {
+    for (int round = 0;; ++round) {
+      stage.check_cancelled();
+      take_mesh(round < kMaxRounds);
+      std::vector<TetId> changed;
+      PieceRepair repair =
+          mend_pieces(complex_, pieces_, mending_.image, mending_.components, contents_);
+      const RelabelPrice price = voxel_price(complex_, mending_.image, contents_);
+      singular_ = mend_single_tets(complex_, pieces_, singular_among(complex_, inner_vertices()), price, kMaxPrice,
+                                   changed);
+      std::vector<TetId> marked = std::move(repair.refine);
+      for (const VertexId v : singular_)
+        marked.insert(marked.end(), complex_.tets_of_vertex[v].begin(), complex_.tets_of_vertex[v].end());
+      std::erase_if(marked, [&](TetId t) { return !contents_.may_refine[t]; });
+      mesh_.tissues = complex_.mesh.tissues;
+      if (singular_.empty() && counts_agree()) return true;
+      if (round >= kMaxRounds || marked.empty() || !refine(marked)) break;
+    }
+    if (!singular_.empty() && !untangle()) return false;
+    mesh_.tissues = complex_.mesh.tissues;
+    return counts_agree();
+  }
+
+ private:
+  void take_mesh(bool may_refine);
+  void join_beyond();
+  void find_voxels();
+  std::vector<VertexId> inner_vertices() const;
+  bool counts_agree() const;
+  bool refine(std::vector<TetId>& marked);
+  bool untangle();
+
+  TissueMesh& mesh_;
+  const LabelMending& mending_;
+  std::map<std::array<double, 3>, VertexId> border_;  // places of the border's vertices
+  std::map<VertexId, std::vector<RestPieces::Contact>> contacts_;
+  TetComplex complex_;
+  Pieces pieces_;
+  std::vector<char> is_border_;
+  TetContents contents_;
+  std::vector<std::uint32_t> voxel_begin_, voxels_;  // by tetrahedron
+  std::vector<VertexId> singular_;
+};
+
+void PatchMender::take_mesh(bool may_refine) {
+  complex_ = make_complex(mesh_);
+  is_border_.assign(mesh_.points_mm.size(), 0);
+  for (TetId t = 0; t < mesh_.tets.size(); ++t) {
+    for (std::size_t n = 0; n < 4; ++n) {
+      for (std::size_t m = 0; m < 4 && complex_.behind[t][n] == t; ++m) {
+        if (m != n) is_border_[mesh_.tets[t][m]] = 1;
+      }
+    }
+  }
+  join_beyond();
+  pieces_ = find_pieces(complex_);
+  find_voxels();
+  const std::size_t count = mesh_.tets.size();
+  const Vec3 s = mending_.image.spacing_mm;
+  contents_.sizes.resize(count);
+  contents_.fixed.resize(count);
+  contents_.may_refine.resize(count);
+  contents_.decided.assign(count, 0);
+  parallel_for(count, [&](std::size_t t) {
+    const auto id = static_cast<TetId>(t);
+    contents_.sizes[t] = static_cast<float>(volume_of(mesh_, id) / (s.x * s.y * s.z));
+    const bool touches_border = std::ranges::any_of(mesh_.tets[t], [&](VertexId v) { return is_border_[v] != 0; });
+    contents_.fixed[t] = touches_border || !is_within(mesh_, id, mending_.bounds);
+    contents_.may_refine[t] = may_refine && !contents_.fixed[t] && contents_.sizes[t] > kSmallest;
+  });
+  contents_.voxels = [this](TetId t) {
+    return std::span(voxels_).subspan(voxel_begin_[t], voxel_begin_[t + 1] - voxel_begin_[t]);
+  };
+}
+
+// Tetrahedra that touch the same piece of the rest.
+void PatchMender::join_beyond() {
+  complex_.joined_beyond.clear();
+  std::map<std::pair<TissueId, std::uint32_t>, TetId> first;
+  for (VertexId v = 0; v < mesh_.points_mm.size(); ++v) {
+    if (!is_border_[v]) continue;
+    const Vec3& p = mesh_.points_mm[v];
+    const auto known = border_.find(std::array{p.x, p.y, p.z});
+    if (known == border_.end()) continue;
+    const auto contacts = contacts_.find(known->second);
+    if (contacts == contacts_.end()) continue;
+    for (const auto& contact : contacts->second) {
+      for (const TetId t : complex_.tets_of_vertex[v]) {
+        if (mesh_.tissues[t] != contact.tissue) continue;
+        const auto [at, is_new] = first.try_emplace(std::pair(contact.tissue, contact.piece), t);
+        if (!is_new && at->second != t) complex_.joined_beyond.push_back({at->second, t});
+      }
+    }
+  }
+}
+
+void PatchMender::find_voxels() {
+  const TissueImage &part = mending_.part, &image = mending_.image;
+  GridSize size;
+  for (std::size_t a = 0; a < 3; ++a) size[a] = static_cast<std::size_t>(part.size[a]);
+  std::vector<Vec3> points(mesh_.points_mm.size());
+  for (std::size_t v = 0; v < points.size(); ++v) {
+    for (std::size_t a = 0; a < 3; ++a)
+      points[v][a] = mesh_.points_mm[v][a] / part.spacing_mm[a] - static_cast<double>(part.first[a]);
+  }
+  std::vector<TetId> owner(part.voxels.size(), kNoTet);
+  for_each_owned_slices(points, mesh_.tets, size, {}, [&](const OwnedSlices& slices) {
+    std::copy(slices.owner.begin(), slices.owner.end(), owner.begin() + static_cast<std::ptrdiff_t>(slices.first * size[0] * size[1]));
+  });
+  voxel_begin_.assign(mesh_.tets.size() + 1, 0);
+  for (const TetId t : owner) {
+    if (t != kNoTet) ++voxel_begin_[t + 1];
+  }
+  std::partial_sum(voxel_begin_.begin(), voxel_begin_.end(), voxel_begin_.begin());
+  std::vector<std::uint32_t> next(voxel_begin_.begin(), voxel_begin_.end() - 1);
+  voxels_.assign(voxel_begin_.back(), 0);
+  std::size_t v = 0;
+  std::array<int, 3> shift;
+  for (std::size_t a = 0; a < 3; ++a) shift[a] = static_cast<int>(part.first[a] - image.first[a]);
+  for (int k = 0; k < part.size[2]; ++k) {
+    for (int j = 0; j < part.size[1]; ++j) {
+      for (int i = 0; i < part.size[0]; ++i, ++v) {
+        if (owner[v] == kNoTet) continue;
+        const std::array<int, 3> at = {i + shift[0], j + shift[1], k + shift[2]};
+        // Beyond the crop there is background only: any voxel of it stands for that.
+        const std::size_t offset = image.contains(at[0], at[1], at[2]) ? image.offset(at[0], at[1], at[2]) : 0;
+        voxels_[next[owner[v]]++] = static_cast<std::uint32_t>(offset);
+      }
+    }
+  }
+}
+
+std::vector<VertexId> PatchMender::inner_vertices() const {
+  std::vector<VertexId> inner;
+  for (VertexId v = 0; v < is_border_.size(); ++v) {
+    if (!is_border_[v]) inner.push_back(v);
+  }
+  return inner;
+}
+
+// As many pieces as components, over all of the mesh, of each tissue that is or was in the patch.
+bool PatchMender::counts_agree() const {
+  const auto components = mending_.components.count_by_tissue(mending_.image.labels.size());
+  std::vector<std::uint32_t> pieces(components.size(), 0);
+  for (const auto& piece : pieces_.list) pieces[piece.tissue] += piece.tets > 0;
+  for (std::size_t t = 1; t < components.size(); ++t) {
+    if (!mending_.rest.counted[t] && pieces[t] == 0) continue;
+    if (!mending_.rest.counted[t] || pieces[t] + mending_.rest.closed[t] != components[t]) return false;
+  }
+  return true;
+}
+
+bool PatchMender::refine(std::vector<TetId>& marked) {
+  std::sort(marked.begin(), marked.end());
+  marked.erase(std::unique(marked.begin(), marked.end()), marked.end());
+  MeshEditor editor(mesh_);
+  if (split_tets(editor, mending_.bounds, marked) == 0) return false;
+  mesh_ = editor.result();
+  return true;
+}
+
+// Ever larger neighbourhoods of what is singular are given to one tissue each.
+bool PatchMender::untangle() {
+  constexpr int kMaxGrowth = 4;
+  std::vector<VertexId> tangle;
+  for (int n = 0; n < kMaxGrowth && !singular_.empty(); ++n) {
+    const std::size_t known = tangle.size();
+    tangle.insert(tangle.end(), singular_.begin(), singular_.end());
+    for (std::size_t i = 0; i < known; ++i) {
+      for (const TetId t : complex_.tets_of_vertex[tangle[i]])
+        tangle.insert(tangle.end(), complex_.mesh.tets[t].begin(), complex_.mesh.tets[t].end());
+    }
+    std::sort(tangle.begin(), tangle.end());
+    tangle.erase(std::unique(tangle.begin(), tangle.end()), tangle.end());
+    for (const VertexId v : tangle) {
+      for (const TetId t : complex_.tets_of_vertex[v]) {
+        if (contents_.fixed[t]) return false;
+      }
+    }
+    std::vector<TetId> changed;
+    mend_neighbourhoods(complex_, pieces_, tangle, contents_.sizes, kMaxGroup, changed);
+    singular_ = mend_single_tets(complex_, pieces_, singular_among(complex_, inner_vertices()),
+                                 voxel_price(complex_, mending_.image, contents_), kMaxPrice, changed);
+  }
+  return singular_.empty();
+}
+
+}  // namespace
+
+std::vector<char> vote(TissueMesh& mesh, const TissueImage& part, const std::vector<char>& is_changed,
+                       const ShapeBounds& bounds) {
+  const LabelField field(part);
+  std::vector<char> asked(mesh.tets.size(), 0);
+  std::vector<TissueId> tissues(mesh.tets.size());
+  parallel_for(
+      mesh.tets.size(),
+      [&](std::size_t t) {
+        const auto id = static_cast<TetId>(t);
+        bool is_asked = false;
+        const TissueId tissue = voted(mesh, id, field, is_changed, is_asked);
+        asked[t] = is_asked;
+        const bool stays = mesh.tissues[t] == 0 && tissue != 0 && !is_within(mesh, id, bounds);
+        tissues[t] = stays ? TissueId{0} : tissue;
+      },
+      64);
+  mesh.tissues = std::move(tissues);
+  clean_labels(mesh, [&](TetId t) { return asked[t] && (mesh.tissues[t] != 0 || is_within(mesh, t, bounds)); });
+  return asked;
+}
+
+bool mend_labels(TissueMesh& mesh, const LabelMending& mending, const Stage& stage) {
+  return PatchMender(mesh, mending).run(stage);
+}
+
+}  // namespace anatomesh
