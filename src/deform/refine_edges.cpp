@@ -153,6 +153,20 @@ std::size_t split_tets(MeshEditor& mesh, const ShapeBounds& bounds, const std::v
   return splits;
 }
 
+std::size_t split_around(MeshEditor& mesh, const ShapeBounds& bounds, VertexId v) {
+  std::vector<Edge> edges;
+  for (const TetId t : mesh.tets_at(v)) {
+    for (const VertexId w : mesh.tet(t)) {
+      if (w != v && !is_cut(mesh, v, w))
+        edges.push_back({norm(mesh.point(v) - mesh.point(w)), std::min(v, w), std::max(v, w)});
+    }
+  }
+  sort_and_unify(edges);
+  std::size_t splits = 0;
+  for (const Edge& edge : edges) splits += split_at_middle(mesh, bounds, edge.low, edge.high, 0);
+  return splits;
+}
+
 std::size_t split_bridges(MeshEditor& mesh, const ShapeBounds& asked, const Stage& stage) {
   const ShapeBounds well = ShapeBounds::from_degrees(25, 135, 0.4);
   const ShapeBounds bounds = {std::min(well.largest_cos, asked.largest_cos),

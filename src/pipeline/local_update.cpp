@@ -23,6 +23,7 @@
 #include "deform/volume_shifts.h"
 #include "image/boundary_area.h"
 #include "image/components.h"
+#include "lattice/mend_surfaces.h"
 #include "mesh/adjacency.h"
 #include "mesh/mesh_editor.h"
 #include "mesh/tet_shape.h"
@@ -54,18 +55,20 @@ ShapeBounds bounds_of(const DeformOptions& o) {
   return ShapeBounds::from_degrees(o.min_dihedral_deg, o.max_dihedral_deg, o.min_mean_ratio);
 }
 
-// The box of the image that a patch takes.
-TissueImage box_around(const TissueImage& image, const TissueMesh& mesh) {
+// The box of the image around a change and the interfaces of a patch.
+TissueImage box_around(const TissueImage& image, const IndexBox& change, const TissueMesh& mesh) {
+  const MeshTopology topology = make_topology(mesh);
   std::array<std::int64_t, 3> first;
   std::array<int, 3> size;
   for (std::size_t a = 0; a < 3; ++a) {
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (const Vec3& p : mesh.points_mm) {
-      low = std::min(low, p[a]);
-      high = std::max(high, p[a]);
+    double low = static_cast<double>(change.low[a]), high = static_cast<double>(change.high[a] - 1);
+    for (VertexId v = 0; v < mesh.points_mm.size(); ++v) {
+      if (!topology.on_interface(v)) continue;
+      low = std::min(low, mesh.points_mm[v][a] / image.spacing_mm[a]);
+      high = std::max(high, mesh.points_mm[v][a] / image.spacing_mm[a]);
     }
-    first[a] = static_cast<std::int64_t>(std::floor(low / image.spacing_mm[a])) - kMargin;
-    size[a] = static_cast<int>(static_cast<std::int64_t>(std::ceil(high / image.spacing_mm[a])) + kMargin + 1 - first[a]);
+    first[a] = static_cast<std::int64_t>(std::floor(low)) - kMargin;
+    size[a] = static_cast<int>(static_cast<std::int64_t>(std::ceil(high)) + kMargin + 1 - first[a]);
   }
   return part_of(image, first, size);
 }
@@ -86,6 +89,16 @@ std::vector<char> mark_changed(const TissueImage& part, const ImageChange& chang
 
 void give_number(TissueMesh& mesh, TissueId from, TissueId to) {
   std::ranges::replace(mesh.tissues, from, to);
+}
+
+void check_topology(const TissueMesh& mesh, const char* where) {
+  if (!trace()) return;
+  const std::vector<char> border = border_vertices(mesh);
+  const TetComplex complex = make_complex(mesh);
+  std::size_t bad = 0, shown = 0;
+  for (const VertexId v : singular_vertices(complex)) { if (border[v]) continue; ++bad;
+   if (shown++<3) { const Vec3 p=mesh.points_mm[v]; std::fprintf(stderr,"   at %.2f %.2f %.2f:",p.x,p.y,p.z); for (const TetId t: complex.tets_of_vertex[v]) std::fprintf(stderr," %d",mesh.tissues[t]); std::fprintf(stderr,"\n"); } }
+  std::fprintf(stderr, "  %s: singular inner vertices %zu\n", where, bad);
 }
 
 class LocalUpdate {
@@ -287,7 +300,7 @@ LocalResult LocalUpdate::run() {
   patch_ = take_patch(kept_.mesh, blocks, change_.after.spacing_mm, kRings);
   mesh_ = patch_.mesh;
   clock_.lap("patch", mesh_.tets.size());
-  part_ = box_around(change_.after, mesh_);
+  part_ = box_around(change_.after, change_.box, mesh_);
   is_changed_ = mark_changed(part_, change_);
   clock_.lap("part", part_.voxels.size());
   field_.emplace(part_);
@@ -298,10 +311,14 @@ LocalResult LocalUpdate::run() {
   clock_.lap("sizes");
   refine();
   if (!relabel()) return {"the labels could not be mended", 0};
+  check_topology(patch_.mesh, "before");
+  check_topology(mesh_, "labels");
   deform();
+  check_topology(mesh_, "deform");
   improve();
+  check_topology(mesh_, "improve");
   if (std::string why = fault(); !why.empty()) return {why, 0};
-  const TissueImage old = box_around(change_.before, patch_.mesh);
+  const TissueImage old = part_of(change_.before, part_.first, part_.size);
   const MeshFidelity before = measure_fidelity(patch_.mesh, old, stage_), after = measure_fidelity(mesh_, part_, stage_);
   KeptMesh next;
   next.fidelity = updated(kept_.fidelity, before.tissues, after.tissues);

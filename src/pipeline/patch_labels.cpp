@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <map>
 #include <numeric>
 #include <span>
@@ -10,6 +12,7 @@
 #include "base/parallel.h"
 #include "base/vec.h"
 #include "boundary/label_field.h"
+#include "deform/improve_shapes.h"
 #include "deform/refine_edges.h"
 #include "lattice/clean_labels.h"
 #include "lattice/mend_pieces.h"
@@ -22,7 +25,7 @@ namespace {
 
 constexpr int kMaxRounds = 8;
 constexpr double kMaxPrice = 5;          // voxels that a relabelled tetrahedron may cost
-constexpr std::size_t kMaxGroup = 400;   // tetrahedra given to one tissue as the last resort
+constexpr double kGoodSlack = 0.03;      // that tetrahedra are improved to between two rounds
 constexpr float kSmallest = 0.02f;       // voxels; smaller tetrahedra are not split
 constexpr int kFewPoints = 3, kManyPoints = 8;
 
@@ -99,16 +102,20 @@ class PatchMender {
       std::vector<TetId> changed;
       PieceRepair repair =
           mend_pieces(complex_, pieces_, mending_.image, mending_.components, contents_);
-      const RelabelPrice price = voxel_price(complex_, mending_.image, contents_);
-      singular_ = mend_single_tets(complex_, pieces_, singular_among(complex_, inner_vertices()), price, kMaxPrice,
-                                   changed);
+      singular_ = mend_single_tets(complex_, pieces_, singular_among(complex_, inner_vertices()),
+                                   [this](TetId t, TissueId tissue) { return price(t, tissue); }, kMaxPrice, changed);
       std::vector<TetId> marked = std::move(repair.refine);
-      for (const VertexId v : singular_)
-        marked.insert(marked.end(), complex_.tets_of_vertex[v].begin(), complex_.tets_of_vertex[v].end());
       std::erase_if(marked, [&](TetId t) { return !contents_.may_refine[t]; });
       mesh_.tissues = complex_.mesh.tissues;
+      if (getenv("REMESH_TRACE")) {
+        fprintf(stderr, "   mend %d: piece changes %zu single changes %zu singular %zu marked %zu agree %d\n", round, repair.changed.size(), changed.size(), singular_.size(), marked.size(), counts_agree());
+        const auto components = mending_.components.count_by_tissue(mending_.image.labels.size());
+        std::vector<std::uint32_t> pieces(components.size(), 0);
+        for (const auto& piece : pieces_.list) pieces[piece.tissue] += piece.tets > 0;
+        for (std::size_t t = 1; t < components.size(); ++t) if (mending_.rest.counted[t] && pieces[t] + mending_.rest.closed[t] != components[t]) fprintf(stderr, "     tissue %zu pieces %u closed %u components %u\n", t, pieces[t], mending_.rest.closed[t], components[t]);
+      }
       if (singular_.empty() && counts_agree()) return true;
-      if (round >= kMaxRounds || marked.empty() || !refine(marked)) break;
+      if (round >= kMaxRounds || !refine(marked, stage)) break;
     }
     if (!singular_.empty() && !untangle()) return false;
     mesh_.tissues = complex_.mesh.tissues;
@@ -121,8 +128,11 @@ class PatchMender {
   void find_voxels();
   std::vector<VertexId> inner_vertices() const;
   bool counts_agree() const;
-  bool refine(std::vector<TetId>& marked);
+  bool refine(std::vector<TetId>& marked, const Stage& stage);
+  std::vector<TetId> tets_around(VertexId v, int rings) const;
+  bool unite(const std::vector<TetId>& group);
   bool untangle();
+  double price(TetId t, TissueId tissue) const;
 
   TissueMesh& mesh_;
   const LabelMending& mending_;
@@ -133,6 +143,7 @@ class PatchMender {
   std::vector<char> is_border_;
   TetContents contents_;
   std::vector<std::uint32_t> voxel_begin_, voxels_;  // by tetrahedron
+  std::vector<char> is_bad_;  // outside the bounds: background that cannot become a tissue
   std::vector<VertexId> singular_;
 };
 
@@ -155,11 +166,13 @@ void PatchMender::take_mesh(bool may_refine) {
   contents_.fixed.resize(count);
   contents_.may_refine.resize(count);
   contents_.decided.assign(count, 0);
+  is_bad_.resize(count);
   parallel_for(count, [&](std::size_t t) {
     const auto id = static_cast<TetId>(t);
     contents_.sizes[t] = static_cast<float>(volume_of(mesh_, id) / (s.x * s.y * s.z));
     const bool touches_border = std::ranges::any_of(mesh_.tets[t], [&](VertexId v) { return is_border_[v] != 0; });
-    contents_.fixed[t] = touches_border || !is_within(mesh_, id, mending_.bounds);
+    contents_.fixed[t] = touches_border;
+    is_bad_[t] = !is_within(mesh_, id, mending_.bounds);
     contents_.may_refine[t] = may_refine && !contents_.fixed[t] && contents_.sizes[t] > kSmallest;
   });
   contents_.voxels = [this](TetId t) {
@@ -244,39 +257,107 @@ bool PatchMender::counts_agree() const {
   return true;
 }
 
-bool PatchMender::refine(std::vector<TetId>& marked) {
+bool PatchMender::refine(std::vector<TetId>& marked, const Stage& stage) {
   std::sort(marked.begin(), marked.end());
   marked.erase(std::unique(marked.begin(), marked.end()), marked.end());
-  MeshEditor editor(mesh_);
-  if (split_tets(editor, mending_.bounds, marked) == 0) return false;
+  // The background is improved like a tissue.
+  const auto air = static_cast<TissueId>(mending_.image.labels.size());
+  TissueMesh finer = mesh_;
+  std::ranges::replace(finer.tissues, TissueId{0}, air);
+  MeshEditor editor(finer);
+  std::size_t splits = split_tets(editor, mending_.bounds, marked);
+  for (const VertexId v : singular_) splits += split_around(editor, mending_.bounds, v);
+  if (splits == 0) return false;
+  improve_shapes(editor, mending_.bounds, kGoodSlack, stage);
   mesh_ = editor.result();
+  std::ranges::replace(mesh_.tissues, air, TissueId{0});
   return true;
 }
 
-// Ever larger neighbourhoods of what is singular are given to one tissue each.
-bool PatchMender::untangle() {
-  constexpr int kMaxGrowth = 4;
-  std::vector<VertexId> tangle;
-  for (int n = 0; n < kMaxGrowth && !singular_.empty(); ++n) {
-    const std::size_t known = tangle.size();
-    tangle.insert(tangle.end(), singular_.begin(), singular_.end());
-    for (std::size_t i = 0; i < known; ++i) {
-      for (const TetId t : complex_.tets_of_vertex[tangle[i]])
-        tangle.insert(tangle.end(), complex_.mesh.tets[t].begin(), complex_.mesh.tets[t].end());
+// Tetrahedra around a vertex, so many rings of them, ascending.
+std::vector<TetId> PatchMender::tets_around(VertexId v, int rings) const {
+  std::vector<TetId> tets(complex_.tets_of_vertex[v].begin(), complex_.tets_of_vertex[v].end());
+  for (int ring = 1; ring < rings; ++ring) {
+    std::vector<TetId> more;
+    for (const TetId t : tets) {
+      for (const VertexId w : complex_.mesh.tets[t])
+        more.insert(more.end(), complex_.tets_of_vertex[w].begin(), complex_.tets_of_vertex[w].end());
     }
-    std::sort(tangle.begin(), tangle.end());
-    tangle.erase(std::unique(tangle.begin(), tangle.end()), tangle.end());
-    for (const VertexId v : tangle) {
-      for (const TetId t : complex_.tets_of_vertex[v]) {
-        if (contents_.fixed[t]) return false;
-      }
-    }
-    std::vector<TetId> changed;
-    mend_neighbourhoods(complex_, pieces_, tangle, contents_.sizes, kMaxGroup, changed);
-    singular_ = mend_single_tets(complex_, pieces_, singular_among(complex_, inner_vertices()),
-                                 voxel_price(complex_, mending_.image, contents_), kMaxPrice, changed);
+    tets = std::move(more);
+    std::sort(tets.begin(), tets.end());
+    tets.erase(std::unique(tets.begin(), tets.end()), tets.end());
   }
-  return singular_.empty();
+  return tets;
+}
+
+// Gives all tetrahedra of a group to one tissue where no defect is left around them then, as many pieces as before are
+// right, and it costs least.
+bool PatchMender::unite(const std::vector<TetId>& group) {
+  std::vector<VertexId> vertices;
+  std::vector<TissueId> own, tissues;
+  for (const TetId t : group) {
+    if (contents_.fixed[t]) return false;
+    own.push_back(complex_.tissue(t));
+    vertices.insert(vertices.end(), complex_.mesh.tets[t].begin(), complex_.mesh.tets[t].end());
+  }
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  tissues = own;
+  std::sort(tissues.begin(), tissues.end());
+  tissues.erase(std::unique(tissues.begin(), tissues.end()), tissues.end());
+  const bool agreed = counts_agree();
+  double least = kTooDear;
+  TissueId best = 0;
+  bool found = false;
+  const auto give = [&](TissueId tissue) {
+    for (const TetId t : group) complex_.mesh.tissues[t] = tissue;
+  };
+  const auto give_back = [&] {
+    for (std::size_t n = 0; n < group.size(); ++n) complex_.mesh.tissues[group[n]] = own[n];
+  };
+  for (const TissueId tissue : tissues) {
+    double cost = 0;
+    for (const TetId t : group) cost += complex_.tissue(t) == tissue ? 0 : price(t, tissue);
+    if (cost >= least) continue;
+    give(tissue);
+    bool sound = std::ranges::all_of(vertices, [&](VertexId v) { return star_defect(complex_, v) == 0; });
+    if (sound && agreed) {
+      pieces_ = find_pieces(complex_);
+      sound = counts_agree();
+    }
+    give_back();
+    if (!sound) continue;
+    least = cost;
+    best = tissue;
+    found = true;
+  }
+  if (found) give(best);
+  pieces_ = find_pieces(complex_);
+  return found;
+}
+
+// Neighbourhoods of what is singular are given to one tissue each.
+bool PatchMender::untangle() {
+  constexpr int kMaxRings = 3;
+  for (const VertexId v : singular_) { const Vec3 p=mesh_.points_mm[v]; fprintf(stderr,"  singular at %.2f %.2f %.2f defect %u:",p.x,p.y,p.z,star_defect(complex_,v)); for (const TetId t : complex_.tets_of_vertex[v]) fprintf(stderr," %d%s%s",complex_.tissue(t),contents_.fixed[t]?"f":"",is_bad_[t]?"b":""); fprintf(stderr,"\n"); }
+  for (int rings = 1; rings <= kMaxRings; ++rings) {
+    for (const VertexId v : singular_) {
+      if (star_defect(complex_, v) > 0) unite(tets_around(v, rings));
+    }
+    singular_ = singular_among(complex_, inner_vertices());
+    if (singular_.empty()) return true;
+  }
+  return false;
+}
+
+double PatchMender::price(TetId t, TissueId tissue) const {
+  if (contents_.fixed[t] || (tissue != 0 && is_bad_[t])) return 2 * kTooDear;
+  double price = 0;
+  for (const std::uint32_t v : contents_.voxels(t)) {
+    price += mending_.image.voxels[v] == complex_.tissue(t);
+    price -= mending_.image.voxels[v] == tissue;
+  }
+  return std::max(0.0, price);
 }
 
 }  // namespace
