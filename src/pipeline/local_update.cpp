@@ -23,7 +23,6 @@
 #include "deform/volume_shifts.h"
 #include "image/boundary_area.h"
 #include "image/components.h"
-#include "lattice/mend_surfaces.h"
 #include "mesh/adjacency.h"
 #include "mesh/mesh_editor.h"
 #include "mesh/tet_shape.h"
@@ -36,6 +35,8 @@ namespace {
 
 constexpr int kReachBlocks = 2;  // of a change around it, blocks of voxels
 constexpr int kRings = 2;        // of tetrahedra around those that it reaches
+constexpr int kAttempts = 3;     // each with finer surfaces where the one before lacked something
+constexpr double kFiner = 0.65, kFinest = 0.4;  // of the size before; of the smallest voxel spacing
 constexpr int kMargin = 6;       // voxels around the patch that the field looks at
 
 bool trace() {
@@ -91,16 +92,6 @@ void give_number(TissueMesh& mesh, TissueId from, TissueId to) {
   std::ranges::replace(mesh.tissues, from, to);
 }
 
-void check_topology(const TissueMesh& mesh, const char* where) {
-  if (!trace()) return;
-  const std::vector<char> border = border_vertices(mesh);
-  const TetComplex complex = make_complex(mesh);
-  std::size_t bad = 0, shown = 0;
-  for (const VertexId v : singular_vertices(complex)) { if (border[v]) continue; ++bad;
-   if (shown++<3) { const Vec3 p=mesh.points_mm[v]; std::fprintf(stderr,"   at %.2f %.2f %.2f:",p.x,p.y,p.z); for (const TetId t: complex.tets_of_vertex[v]) std::fprintf(stderr," %d",mesh.tissues[t]); std::fprintf(stderr,"\n"); } }
-  std::fprintf(stderr, "  %s: singular inner vertices %zu\n", where, bad);
-}
-
 class LocalUpdate {
  public:
   LocalUpdate(KeptMesh& kept, const ImageChange& change, const Options& options, std::vector<double> wanted,
@@ -110,12 +101,13 @@ class LocalUpdate {
         wanted_(std::move(wanted)),
         bounds_(bounds_of(options.deform)),
         stage_(stage),
-        tissues_(change.after.labels.size()) {}
+        tissues_(change.after.labels.size()),
+        air_(static_cast<TissueId>(tissues_)) {}
 
   LocalResult run();
 
  private:
-  void choose_sizes(double factor);
+  void choose_sizes();
   std::vector<double> wanted_volumes() const;
   void refine();
   bool relabel();
@@ -126,7 +118,11 @@ class LocalUpdate {
     if (background_too) give_number(mesh_, 0, air_);
     else give_number(mesh_, air_, 0);
   }
-  std::string fault() const;
+  void take();
+  std::optional<KeptMesh> attempt(std::string& failure);
+  bool is_within_bounds() const;
+  std::vector<char> lacking(const KeptMesh& next) const;
+  KeptMesh measured() const;
   std::vector<Fidelity> updated(const std::vector<Fidelity>& all, const std::vector<Fidelity>& before,
                                 const std::vector<Fidelity>& after) const;
 
@@ -136,20 +132,20 @@ class LocalUpdate {
   ShapeBounds bounds_;
   const Stage& stage_;
   std::size_t tissues_;
-  TissueId air_ = 0;  // the number of the background while it counts as a tissue
+  TissueId air_;  // the number of the background while it counts as a tissue
   MeshPatch patch_;
   TissueMesh mesh_;
   TissueImage part_;
   std::optional<SurfaceField> field_;
   std::optional<VolumeShifts> shifts_;
   std::vector<char> is_changed_;
-  std::vector<double> surface_mm_;
+  std::vector<double> surface_mm_, wanted_mm3_;
   Clock clock_;
 };
 
 // A tissue that the image has had before keeps the size of its surface, unless it has become thinner; a new one has
 // what image_to_mesh() would begin with.
-void LocalUpdate::choose_sizes(double factor) {
+void LocalUpdate::choose_sizes() {
   constexpr double kWrongShare = 0.006, kLayer = 0.08, kEdge = 0.9;
   const TissueImage& image = change_.after;
   const std::vector<double> area = boundary_areas_mm2(image);
@@ -163,7 +159,6 @@ void LocalUpdate::choose_sizes(double factor) {
     wrong = std::min(wrong, wrong / 0.05 * kLayer * std::max({s.x, s.y, s.z}) / thick);
     const double size = kEdge * std::sqrt(wrong / kWrongShare) * thick;
     if (surface_mm_[t] == 0 || size < surface_mm_[t]) surface_mm_[t] = std::max(size, std::min({s.x, s.y, s.z}));
-    surface_mm_[t] *= factor;
   }
 }
 
@@ -260,20 +255,20 @@ void LocalUpdate::improve() {
   clock_.lap("finish", mesh_.tets.size());
 }
 
-std::string LocalUpdate::fault() const {
+bool LocalUpdate::is_within_bounds() const {
   for (TetId t = 0; t < mesh_.tets.size(); ++t) {
     const auto& [a, b, c, d] = mesh_.tets[t];
     if (mesh_.tissues[t] != 0 &&
         !within(bounds_, mesh_.points_mm[a], mesh_.points_mm[b], mesh_.points_mm[c], mesh_.points_mm[d]))
-      return "a tetrahedron is outside its bounds";
+      return false;
   }
-  return {};
+  return true;
 }
 
+// Voxels that are not in the patch count in neither.
 std::vector<Fidelity> LocalUpdate::updated(const std::vector<Fidelity>& all, const std::vector<Fidelity>& before,
                                            const std::vector<Fidelity>& after) const {
   std::vector<Fidelity> result = all;
-  result.resize(tissues_);
   for (std::size_t t = 1; t < tissues_; ++t) {
     result[t].in_tets = result[t].in_tets + after[t].in_tets - before[t].in_tets;
     result[t].hits = result[t].hits + after[t].hits - before[t].hits;
@@ -292,51 +287,103 @@ std::vector<double> volumes_of(const TissueMesh& mesh, std::size_t tissues) {
   return volume;
 }
 
-LocalResult LocalUpdate::run() {
-  air_ = static_cast<TissueId>(tissues_);
-  VoxelBlocks blocks(change_.box);
-  for (const auto& voxel : change_.voxels) blocks.add(voxel);
-  blocks.dilate(kReachBlocks);
-  patch_ = take_patch(kept_.mesh, blocks, change_.after.spacing_mm, kRings);
-  mesh_ = patch_.mesh;
-  clock_.lap("patch", mesh_.tets.size());
-  part_ = box_around(change_.after, change_.box, mesh_);
-  is_changed_ = mark_changed(part_, change_);
-  clock_.lap("part", part_.voxels.size());
-  field_.emplace(part_);
-  clock_.lap("field", part_.voxels.size());
-  shifts_.emplace(part_, wanted_volumes());
-  clock_.lap("volumes");
-  choose_sizes(1);
-  clock_.lap("sizes");
-  refine();
-  if (!relabel()) return {"the labels could not be mended", 0};
-  check_topology(patch_.mesh, "before");
-  check_topology(mesh_, "labels");
-  deform();
-  check_topology(mesh_, "deform");
-  improve();
-  check_topology(mesh_, "improve");
-  if (std::string why = fault(); !why.empty()) return {why, 0};
+// The tissues that have less fidelity than asked for, or a volume farther from the image's than may be, and had not
+// before.
+std::vector<char> LocalUpdate::lacking(const KeptMesh& next) const {
+  constexpr double kNoWorse = 0.003, kMostOff = 0.01;
+  constexpr std::uint64_t kMany = 1000;  // voxels; the volume of smaller tissues follows from their fidelity
+  const auto reached = [](const Fidelity& f) { return std::min(f.f1(), f.f2()); };
+  const auto off = [](double volume, double wanted) { return wanted > 0 ? std::abs(volume / wanted - 1) : 0; };
+  std::vector<char> lacks(tissues_, 0);
+  for (std::size_t t = 1; t < tissues_; ++t) {
+    if (change_.after.counts[t] == 0) continue;
+    const double now = reached(next.inside[t]), before = reached(kept_.inside[t]);
+    const double is_off = off(next.volume_mm3[t], change_.after.volume_mm3(t)),
+                 was_off = off(kept_.volume_mm3[t], change_.before.volume_mm3(t));
+    lacks[t] = (now < wanted_[t] && !(before > 0 && before < wanted_[t] && now > before - kNoWorse)) ||
+               (change_.after.counts[t] >= kMany && is_off > std::max(kMostOff, was_off + kNoWorse));
+  }
+  return lacks;
+}
+
+// What is known of the mesh with the patch as it is now.
+KeptMesh LocalUpdate::measured() const {
   const TissueImage old = part_of(change_.before, part_.first, part_.size);
   const MeshFidelity before = measure_fidelity(patch_.mesh, old, stage_), after = measure_fidelity(mesh_, part_, stage_);
   KeptMesh next;
   next.fidelity = updated(kept_.fidelity, before.tissues, after.tissues);
   next.inside = updated(kept_.inside, before.inside, after.inside);
-  clock_.lap("fidelity");
-  if (trace()) {
-    for (std::size_t t = 1; t < tissues_; ++t)
-      std::fprintf(stderr, "  t %zu F1 %.4f F2 %.4f before %.4f %.4f\n", t, next.fidelity[t].f1(), next.fidelity[t].f2(),
-                   t < kept_.fidelity.size() ? kept_.fidelity[t].f1() : 0, t < kept_.fidelity.size() ? kept_.fidelity[t].f2() : 0);
+  next.volume_mm3 = kept_.volume_mm3;
+  const std::vector<double> gone = volumes_of(patch_.mesh, tissues_), come = volumes_of(mesh_, tissues_);
+  for (std::size_t t = 0; t < tissues_; ++t) next.volume_mm3[t] += come[t] - gone[t];
+  next.surface_mm = surface_mm_;
+  return next;
+}
+
+// Whether the mesh keeps what it must, and what it is like then. Where it does not, the surfaces are to be finer.
+std::optional<KeptMesh> LocalUpdate::attempt(std::string& failure) {
+  mesh_ = patch_.mesh;
+  shifts_.emplace(part_, wanted_mm3_);
+  const auto make_finer = [&](const std::vector<char>& of_tissue) {
+    const Vec3 s = part_.spacing_mm;
+    for (std::size_t t = 1; t < tissues_; ++t) {
+      if (of_tissue[t]) surface_mm_[t] = std::max(kFiner * surface_mm_[t], kFinest * std::min({s.x, s.y, s.z}));
+    }
+  };
+  refine();
+  if (!relabel()) {
+    failure = "near the change the surfaces or the number of parts of a tissue could not be kept";
+    make_finer(std::vector<char>(tissues_, 1));
+    return std::nullopt;
   }
-  const auto v0 = volumes_of(patch_.mesh, tissues_), v1 = volumes_of(mesh_, tissues_);
-  for (std::size_t t = 0; t < tissues_; ++t) kept_.volume_mm3[t] += v1[t] - v0[t];
-  kept_.fidelity = next.fidelity;
-  kept_.inside = next.inside;
-  kept_.surface_mm = surface_mm_;
-  put_patch(kept_.mesh, patch_, mesh_);
-  clock_.lap("put");
-  return {"", tissue_tets(mesh_)};
+  deform();
+  improve();
+  KeptMesh next = measured();
+  clock_.lap("measure");
+  const std::vector<char> lacks = lacking(next);
+  const auto worst = std::ranges::find(lacks, 1);
+  if (is_within_bounds() && worst == lacks.end()) return next;
+  failure = worst == lacks.end() ? "a tetrahedron near the change could not be brought inside the bounds"
+                                 : "label " + std::to_string(change_.after.labels[static_cast<std::size_t>(worst - lacks.begin())]) +
+                                       " would have had less than the fidelity asked for, or another volume";
+  make_finer(lacks);
+  return std::nullopt;
+}
+
+LocalResult LocalUpdate::run() {
+  take();
+  LocalResult result;
+  for (int n = 0; n < kAttempts; ++n) {
+    stage_.at(static_cast<double>(n) / kAttempts);
+    std::optional<KeptMesh> next = attempt(result.failure);
+    if (trace()) std::fprintf(stderr, "  attempt %d: %s\n", n, next ? "ok" : result.failure.c_str());
+    if (!next) continue;
+    result.failure.clear();
+    result.new_tets = tissue_tets(mesh_);
+    next->mesh = std::move(kept_.mesh);
+    kept_ = std::move(*next);
+    put_patch(kept_.mesh, patch_, mesh_);
+    clock_.lap("put");
+    break;
+  }
+  return result;
+}
+
+void LocalUpdate::take() {
+  VoxelBlocks blocks(change_.box);
+  for (const auto& voxel : change_.voxels) blocks.add(voxel);
+  blocks.dilate(kReachBlocks);
+  patch_ = take_patch(kept_.mesh, blocks, change_.after.spacing_mm, kRings);
+  clock_.lap("patch", patch_.tets.size());
+  part_ = box_around(change_.after, change_.box, patch_.mesh);
+  is_changed_ = mark_changed(part_, change_);
+  clock_.lap("part", part_.voxels.size());
+  field_.emplace(part_);
+  clock_.lap("field", part_.voxels.size());
+  wanted_mm3_ = wanted_volumes();
+  clock_.lap("volumes");
+  choose_sizes();
+  clock_.lap("sizes");
 }
 
 }  // namespace
