@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 
 #include "base/vec.h"
 #include "base/vector_clones.h"
@@ -72,12 +73,14 @@ SurfaceField::Sums SurfaceField::sum_up(const Near& near, const std::array<std::
   return sums;
 }
 
-SurfaceField::SurfaceField(const TissueImage& image)
+SurfaceField::SurfaceField(const TissueImage& image) : SurfaceField(image, voxel_weights(image)) {}
+
+SurfaceField::SurfaceField(const TissueImage& image, std::vector<std::uint8_t> weights)
     : image_(&image),
       voxels_per_mm_{1 / image.spacing_mm.x, 1 / image.spacing_mm.y, 1 / image.spacing_mm.z},
       first_{static_cast<double>(image.first[0]), static_cast<double>(image.first[1]),
              static_cast<double>(image.first[2])},
-      weights_(voxel_weights(image)) {}
+      weights_(std::move(weights)) {}
 
 SurfaceField::Near SurfaceField::voxels_near(Vec3 p) const {
   const Support x(p.x * voxels_per_mm_.x - first_.x, image_->size[0], image_->inside(0));

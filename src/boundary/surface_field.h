@@ -20,6 +20,9 @@ class SurfaceField {
  public:
   explicit SurfaceField(const TissueImage& image);
 
+  /// With weights that are known already, those of voxel_weights().
+  SurfaceField(const TissueImage& image, std::vector<std::uint8_t> weights);
+
   /// Value and gradient (per mm) of u_t at p for each of `tissues`, written to the same places of the other two.
   /// p is in the image's frame, mm; any finite point is allowed. Cost: about 50 ns and 50 ns
   /// a tissue (the voxels in cache).
@@ -33,6 +36,7 @@ class SurfaceField {
   Value difference(Vec3 p, TissueId a, TissueId b) const;
 
   const TissueImage& image() const { return *image_; }
+  const std::vector<std::uint8_t>& weights() const { return weights_; }
 
  private:
   struct Near;

@@ -24,6 +24,8 @@ constexpr double kThinMargin = 1.0 / 3;
 constexpr double kMostThin = 3;
 constexpr int kTogether = 3;
 constexpr int kThinRounds = 4;
+// Smoothing, the voxels lost by it, those together, and from each round to the next.
+static_assert(kReach + 1 + 1 + kThinRounds <= kWeightReach);
 
 struct Voxel {
   int i, j, k;

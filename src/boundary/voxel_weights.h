@@ -23,6 +23,9 @@ int voxel_read_at(int index, std::pair<int, int> inside, int size);
 /// them. Cost: about 2 ns a voxel and 0.4 us for each voxel near a boundary. The same for any number of threads.
 std::vector<std::uint8_t> voxel_weights(const TissueImage& image);
 
+/// How far, in voxels along each axis, the labels of an image reach in the weights.
+constexpr int kWeightReach = 8;
+
 constexpr int kWeightUnit = 64;
 
 }  // namespace anatomesh

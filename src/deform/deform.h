@@ -30,6 +30,8 @@ class Deformer {
   /// Smooth and settled surfaces with fewer and better tetrahedra. Throws Cancelled.
   void finish(TissueMesh& mesh, const ImproveOptions& improvement, const Stage& stage) const;
 
+  const SurfaceField& field() const { return field_; }
+
  private:
   const TissueImage& image_;
   const DeformOptions& options_;

@@ -29,6 +29,7 @@
 #include "pipeline/final_fidelity.h"
 #include "pipeline/patch_labels.h"
 #include "pipeline/patch_sizes.h"
+#include "pipeline/patch_weights.h"
 
 namespace anatomesh {
 namespace {
@@ -378,7 +379,7 @@ void LocalUpdate::take() {
   part_ = box_around(change_.after, change_.box, patch_.mesh);
   is_changed_ = mark_changed(part_, change_);
   clock_.lap("part", part_.voxels.size());
-  field_.emplace(part_);
+  field_.emplace(part_, part_of(change_.after, change_.weights, part_.first, part_.size));
   clock_.lap("field", part_.voxels.size());
   wanted_mm3_ = wanted_volumes();
   clock_.lap("volumes");

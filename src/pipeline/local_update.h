@@ -31,6 +31,7 @@ void measure_kept(KeptMesh& kept, std::size_t tissues);
 struct ImageChange {
   const TissueImage& before;
   const TissueImage& after;
+  std::vector<std::uint8_t> weights;                ///< of the second one's surface field
   std::vector<std::array<std::int64_t, 3>> voxels;  ///< indices in the original image, ascending
   IndexBox box;                                     ///< around them
 };

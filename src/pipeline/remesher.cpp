@@ -13,6 +13,7 @@
 #include "pipeline/local_update.h"
 #include "pipeline/meshing.h"
 #include "pipeline/outcome.h"
+#include "pipeline/patch_weights.h"
 
 namespace anatomesh {
 namespace {
@@ -180,6 +181,7 @@ class Remesher::Impl {
   Options options_;
   LabelImage grid_;
   TissueImage image_;
+  std::vector<std::uint8_t> weights_;  // of the image's surface field
   KeptMesh kept_;
   Result result_;
   std::vector<TissueOutcome> lattice_;  // of the last whole meshing
@@ -194,6 +196,7 @@ void Remesher::Impl::mesh_whole(const LabelImage& image, const Options& options,
   measure_kept(kept, made.image.labels.size());
   kept_ = std::move(kept);
   image_ = std::move(made.image);
+  weights_ = std::move(made.deformed.voxel_weights);
   result_ = std::move(made.result);
   lattice_ = result_.tissues;
 }
@@ -256,12 +259,13 @@ bool Remesher::Impl::update_here(const LabelImage& changed, UpdateReport& report
   TissueImage before = image_;
   renumber(before, all);
   renumber(after, all);
-  ImageChange change = {before, after, {}, {}};
+  ImageChange change = {before, after, {}, {}, {}};
   find_changes(change);
   report.changed_voxels = change.voxels.size();
   if (change.voxels.empty()) return true;
   report.reason = not_local(options_);
   if (!report.reason.empty()) return false;
+  change.weights = updated_weights(before, weights_, after, change.box);
   KeptMesh kept = kept_;
   renumber(kept, before_labels, all);
   const LocalResult local = update_locally(kept, change, options_, wanted(all), stage);
@@ -270,6 +274,7 @@ bool Remesher::Impl::update_here(const LabelImage& changed, UpdateReport& report
   report.new_tets = local.new_tets;
   stage.at(1);
   kept_ = std::move(kept);
+  weights_ = std::move(change.weights);
   take(std::move(after), all, std::move(warnings));
   return true;
 }

@@ -198,8 +198,12 @@ DeformedMesh Rounds::finish(TissueMesh mesh, std::size_t target) const {
   deformer_.finish(mesh, improvement, stage);
   MeshFidelity reached = measure_fidelity(mesh, image_, stage);
   stage_done_("improve");
-  TissueMesh beyond = plan_.keeps_background ? builder_->background() : TissueMesh{};
-  return {std::move(mesh), std::move(beyond), lattice_.fidelity, std::move(reached), plan_.bcc_size_mm};
+  DeformedMesh finished = {std::move(mesh), {}, {}, lattice_.fidelity, std::move(reached), plan_.bcc_size_mm};
+  if (plan_.keeps_background) {
+    finished.beyond = builder_->background();
+    finished.voxel_weights = deformer_.field().weights();
+  }
+  return finished;
 }
 
 // Whether so much of a tissue's boundary lies far from the mesh's that it shows in the distances.

@@ -1,6 +1,7 @@
 // Rounds of refinement and deformation.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -17,7 +18,8 @@ namespace anatomesh {
 /// A deformed mesh and its fidelity, by tissue.
 struct DeformedMesh {
   TissueMesh mesh;                ///< with its cushion
-  TissueMesh beyond;              ///< the background around that, as the plan asks
+  TissueMesh beyond;              ///< the background around that, where the plan asks for it
+  std::vector<std::uint8_t> voxel_weights;  ///< of the surface field, in that case
   std::vector<Fidelity> lattice;  ///< of the lattice it was deformed from
   MeshFidelity final;             ///< of the mesh itself
   double root_mm = 0;             ///< spacing of that lattice's root
