@@ -150,7 +150,7 @@ bool ShapeImprover::visit(TetId t) {
 }  // namespace
 
 std::size_t improve_shapes(MeshEditor& mesh, const ShapeBounds& bounds, double enough, const Stage& stage,
-                           std::uint32_t since) {
+                           std::uint32_t since, std::span<const char> around) {
   constexpr TetId kPerCheck = 1 << 14;
   ShapeImprover improver(mesh, bounds);
   std::size_t changes = 0;
@@ -158,7 +158,8 @@ std::size_t improve_shapes(MeshEditor& mesh, const ShapeBounds& bounds, double e
     if (t % kPerCheck == 0) stage.check_cancelled();
     if (!mesh.is_alive(t) || mesh.tissue(t) == 0) continue;
     const bool is_due = std::ranges::any_of(mesh.tet(t), [&](VertexId v) { return mesh.changed_at(v) >= since; });
-    if (!is_due || improver.slack_of(mesh.tet(t)) >= enough) continue;
+    const auto is_near = [&](VertexId v) { return v >= around.size() || around[v]; };
+    if (!is_due || std::ranges::none_of(mesh.tet(t), is_near) || improver.slack_of(mesh.tet(t)) >= enough) continue;
     changes += improver.visit(t);
   }
   return changes;

@@ -114,17 +114,25 @@ std::vector<Edge> find_bridges(const MeshEditor& mesh) {
 }  // namespace
 
 std::size_t refine_edges(MeshEditor& mesh, const ShapeBounds& bounds, const std::function<double(Vec3)>& size_at,
-                         const Stage& stage) {
+                         std::size_t max_tets, const Stage& stage) {
   std::size_t splits = 0;
   std::uint32_t since = 0;
   for (int round = 0; round < kRounds; ++round) {
     stage.check_cancelled();
     const std::uint32_t now = mesh.clock() + 1;
     const std::size_t before = splits;
-    for (const Edge& edge : find_long_edges(mesh, size_at, since))
-      splits += split_at_middle(mesh, bounds, edge.low, edge.high, kSplitSlack);
+    // Better tetrahedra around the edges that cannot be split now may let them be later.
+    std::vector<char> is_at_long_edge(mesh.vertex_count(), 0);
+    for (const Edge& edge : find_long_edges(mesh, size_at, since)) {
+      if (mesh.tissue_tets() >= max_tets) return splits;
+      if (split_at_middle(mesh, bounds, edge.low, edge.high, kSplitSlack)) {
+        ++splits;
+      } else {
+        is_at_long_edge[edge.low] = is_at_long_edge[edge.high] = 1;
+      }
+    }
+    const std::size_t changes = improve_shapes(mesh, bounds, kGoodSlack, stage, round == 0 ? 0 : now, is_at_long_edge);
     since = now;
-    const std::size_t changes = improve_shapes(mesh, bounds, kGoodSlack, stage, round == 0 ? 0 : since);
     if (splits == before && changes == 0) break;
   }
   return splits;

@@ -11,10 +11,10 @@ namespace anatomesh {
 
 /// Splits edges that are longer than about four thirds of what size_at(their middle) asks (mm), the longest for their
 /// size first, where the halves lie inside the bounds; in between, what became bad is improved, so that more can be
-/// split. Edges between two outer vertices stay. The background counts as any tissue. Returns the number of splits.
-/// Deterministic. Throws Cancelled.
+/// split. Edges between two outer vertices stay. The background counts as any tissue. Ends when there are max_tets
+/// tetrahedra. Returns the number of splits. Deterministic. Throws Cancelled.
 std::size_t refine_edges(MeshEditor& mesh, const ShapeBounds& bounds, const std::function<double(Vec3)>& size_at,
-                         const Stage& stage);
+                         std::size_t max_tets, const Stage& stage);
 
 /// Splits the longest edge of each of these tetrahedra that can be split inside the bounds, of the living ones among
 /// them. Returns the number of splits.

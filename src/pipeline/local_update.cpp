@@ -35,9 +35,9 @@ namespace anatomesh {
 namespace {
 
 constexpr int kReachBlocks = 2;  // of a change around it, blocks of voxels
-constexpr int kRings = 2;        // of tetrahedra around those that it reaches
-constexpr int kAttempts = 3;     // each with finer surfaces where the one before lacked something
-constexpr double kFiner = 0.65, kFinest = 0.4;  // of the size before; of the smallest voxel spacing
+// Each with finer surfaces where the one before lacked something, and with one ring more of tetrahedra around.
+constexpr int kAttempts = 3;
+constexpr double kFiner = 0.65, kFinest = 0.4;  // of the size before; of the mean voxel spacing
 constexpr int kMargin = 6;       // voxels around the patch that the field looks at
 
 bool trace() {
@@ -97,11 +97,13 @@ class LocalUpdate {
  public:
   LocalUpdate(KeptMesh& kept, const ImageChange& change, const Options& options, std::vector<double> wanted,
               const Stage& stage)
-      : kept_(kept),
+      : quiet_{{}, stage.cancel_token()},
+        kept_(kept),
         change_(change),
         wanted_(std::move(wanted)),
         bounds_(bounds_of(options.deform)),
-        stage_(stage),
+        progress_(stage),
+        stage_(quiet_, "update", 0, 1),
         tissues_(change.after.labels.size()),
         air_(static_cast<TissueId>(tissues_)) {}
 
@@ -119,7 +121,11 @@ class LocalUpdate {
     if (background_too) give_number(mesh_, 0, air_);
     else give_number(mesh_, air_, 0);
   }
-  void take();
+  double voxel_mm() const {
+    const Vec3 s = change_.after.spacing_mm;
+    return (s.x + s.y + s.z) / 3;
+  }
+  void take(int rings);
   std::optional<KeptMesh> attempt(std::string& failure);
   bool is_within_bounds() const;
   std::vector<char> lacking(const KeptMesh& next) const;
@@ -127,11 +133,13 @@ class LocalUpdate {
   std::vector<Fidelity> updated(const std::vector<Fidelity>& all, const std::vector<Fidelity>& before,
                                 const std::vector<Fidelity>& after) const;
 
+  Progress quiet_;
   KeptMesh& kept_;
   const ImageChange& change_;
   std::vector<double> wanted_;
   ShapeBounds bounds_;
-  const Stage& stage_;
+  const Stage& progress_;
+  Stage stage_;  // of the steps, which say nothing
   std::size_t tissues_;
   TissueId air_;  // the number of the background while it counts as a tissue
   MeshPatch patch_;
@@ -144,22 +152,30 @@ class LocalUpdate {
   Clock clock_;
 };
 
-// A tissue that the image has had before keeps the size of its surface, unless it has become thinner; a new one has
-// what image_to_mesh() would begin with.
-void LocalUpdate::choose_sizes() {
+// The size along a tissue's surface that image_to_mesh() would begin with, mm.
+double first_size(const TissueImage& image, std::size_t tissue, double area_mm2, double wanted) {
   constexpr double kWrongShare = 0.006, kLayer = 0.08, kEdge = 0.9;
-  const TissueImage& image = change_.after;
-  const std::vector<double> area = boundary_areas_mm2(image);
   const Vec3 s = image.spacing_mm;
+  const double thick = image.volume_mm3(tissue) / area_mm2;
+  double wrong = std::max(1e-3, 1 - wanted);
+  wrong = std::min(wrong, wrong / 0.05 * kLayer * std::max({s.x, s.y, s.z}) / thick);
+  return kEdge * std::sqrt(wrong / kWrongShare) * thick;
+}
+
+// A tissue that the image has had before keeps the size of its surface, but for what it has become thinner.
+void LocalUpdate::choose_sizes() {
+  const TissueImage &before = change_.before, &after = change_.after;
+  const std::vector<double> area = boundary_areas_mm2(after), old_area = boundary_areas_mm2(before);
   surface_mm_ = kept_.surface_mm;
-  surface_mm_.resize(tissues_, 0);
   for (std::size_t t = 1; t < tissues_; ++t) {
-    if (image.counts[t] == 0) continue;
-    const double thick = image.volume_mm3(t) / area[t];
-    double wrong = std::max(1e-3, 1 - wanted_[t]);
-    wrong = std::min(wrong, wrong / 0.05 * kLayer * std::max({s.x, s.y, s.z}) / thick);
-    const double size = kEdge * std::sqrt(wrong / kWrongShare) * thick;
-    if (surface_mm_[t] == 0 || size < surface_mm_[t]) surface_mm_[t] = std::max(size, std::min({s.x, s.y, s.z}));
+    if (after.counts[t] == 0) continue;
+    const double size = first_size(after, t, area[t], wanted_[t]);
+    if (surface_mm_[t] == 0 || before.counts[t] == 0) {
+      surface_mm_[t] = size;
+    } else {
+      surface_mm_[t] *= std::min(1.0, size / first_size(before, t, old_area[t], wanted_[t]));
+    }
+    surface_mm_[t] = std::max(surface_mm_[t], kFinest * voxel_mm());
   }
 }
 
@@ -182,7 +198,8 @@ void LocalUpdate::refine() {
   const PatchSizes sizes(part_, surface_mm_, is_changed_);
   as_tissue(true);
   MeshEditor editor(mesh_);
-  const std::size_t splits = refine_edges(editor, bounds_, [&](Vec3 p) { return sizes.at(p); }, stage_);
+  const std::size_t most = 2 * editor.tissue_tets() + kept_.mesh.tets.size();
+  const std::size_t splits = refine_edges(editor, bounds_, [&](Vec3 p) { return sizes.at(p); }, most, stage_);
   mesh_ = editor.result();
   as_tissue(false);
   clock_.lap("refine", splits);
@@ -317,7 +334,7 @@ KeptMesh LocalUpdate::measured() const {
   next.volume_mm3 = kept_.volume_mm3;
   const std::vector<double> gone = volumes_of(patch_.mesh, tissues_), come = volumes_of(mesh_, tissues_);
   for (std::size_t t = 0; t < tissues_; ++t) next.volume_mm3[t] += come[t] - gone[t];
-  next.surface_mm = surface_mm_;
+  next.surface_mm = kept_.surface_mm;
   return next;
 }
 
@@ -326,9 +343,8 @@ std::optional<KeptMesh> LocalUpdate::attempt(std::string& failure) {
   mesh_ = patch_.mesh;
   shifts_.emplace(part_, wanted_mm3_);
   const auto make_finer = [&](const std::vector<char>& of_tissue) {
-    const Vec3 s = part_.spacing_mm;
     for (std::size_t t = 1; t < tissues_; ++t) {
-      if (of_tissue[t]) surface_mm_[t] = std::max(kFiner * surface_mm_[t], kFinest * std::min({s.x, s.y, s.z}));
+      if (of_tissue[t]) surface_mm_[t] = std::max(kFiner * surface_mm_[t], kFinest * voxel_mm());
     }
   };
   refine();
@@ -352,10 +368,11 @@ std::optional<KeptMesh> LocalUpdate::attempt(std::string& failure) {
 }
 
 LocalResult LocalUpdate::run() {
-  take();
+  choose_sizes();
   LocalResult result;
   for (int n = 0; n < kAttempts; ++n) {
-    stage_.at(static_cast<double>(n) / kAttempts);
+    progress_.at(static_cast<double>(n) / kAttempts);
+    take(1 + n);
     std::optional<KeptMesh> next = attempt(result.failure);
     if (trace()) std::fprintf(stderr, "  attempt %d: %s\n", n, next ? "ok" : result.failure.c_str());
     if (!next) continue;
@@ -370,11 +387,11 @@ LocalResult LocalUpdate::run() {
   return result;
 }
 
-void LocalUpdate::take() {
+void LocalUpdate::take(int rings) {
   VoxelBlocks blocks(change_.box);
   for (const auto& voxel : change_.voxels) blocks.add(voxel);
   blocks.dilate(kReachBlocks);
-  patch_ = take_patch(kept_.mesh, blocks, change_.after.spacing_mm, kRings);
+  patch_ = take_patch(kept_.mesh, blocks, change_.after.spacing_mm, rings);
   clock_.lap("patch", patch_.tets.size());
   part_ = box_around(change_.after, change_.box, patch_.mesh);
   is_changed_ = mark_changed(part_, change_);
@@ -383,8 +400,6 @@ void LocalUpdate::take() {
   clock_.lap("field", part_.voxels.size());
   wanted_mm3_ = wanted_volumes();
   clock_.lap("volumes");
-  choose_sizes();
-  clock_.lap("sizes");
 }
 
 }  // namespace

@@ -26,6 +26,7 @@ namespace {
 constexpr int kMaxRounds = 8;
 constexpr double kMaxPrice = 5;          // voxels that a relabelled tetrahedron may cost
 constexpr double kGoodSlack = 0.03;      // that tetrahedra are improved to between two rounds
+constexpr int kFewRings = 2, kManyRings = 3;  // of tetrahedra around a singular vertex that are given to one tissue
 constexpr float kSmallest = 0.02f;       // voxels; smaller tetrahedra are not split
 constexpr int kFewPoints = 3, kManyPoints = 8;
 
@@ -106,6 +107,7 @@ class PatchMender {
                                    [this](TetId t, TissueId tissue) { return price(t, tissue); }, kMaxPrice, changed);
       std::vector<TetId> marked = std::move(repair.refine);
       std::erase_if(marked, [&](TetId t) { return !contents_.may_refine[t]; });
+      if (!singular_.empty() && marked.empty()) untangle(kFewRings, kMaxPrice);
       mesh_.tissues = complex_.mesh.tissues;
       if (getenv("REMESH_TRACE")) {
         fprintf(stderr, "   mend %d: piece changes %zu single changes %zu singular %zu marked %zu agree %d\n", round, repair.changed.size(), changed.size(), singular_.size(), marked.size(), counts_agree());
@@ -117,7 +119,7 @@ class PatchMender {
       if (singular_.empty() && counts_agree()) return true;
       if (round >= kMaxRounds || !refine(marked, stage)) break;
     }
-    if (!singular_.empty() && !untangle()) return false;
+    if (!singular_.empty() && !untangle(kManyRings, kTooDear)) return false;
     mesh_.tissues = complex_.mesh.tissues;
     return counts_agree();
   }
@@ -130,8 +132,8 @@ class PatchMender {
   bool counts_agree() const;
   bool refine(std::vector<TetId>& marked, const Stage& stage);
   std::vector<TetId> tets_around(VertexId v, int rings) const;
-  bool unite(const std::vector<TetId>& group);
-  bool untangle();
+  bool unite(const std::vector<TetId>& group, double max_price);
+  bool untangle(int max_rings, double max_price);
   double price(TetId t, TissueId tissue) const;
 
   TissueMesh& mesh_;
@@ -292,7 +294,7 @@ std::vector<TetId> PatchMender::tets_around(VertexId v, int rings) const {
 
 // Gives all tetrahedra of a group to one tissue where no defect is left around them then, as many pieces as before are
 // right, and it costs least.
-bool PatchMender::unite(const std::vector<TetId>& group) {
+bool PatchMender::unite(const std::vector<TetId>& group, double max_price) {
   std::vector<VertexId> vertices;
   std::vector<TissueId> own, tissues;
   for (const TetId t : group) {
@@ -306,7 +308,7 @@ bool PatchMender::unite(const std::vector<TetId>& group) {
   std::sort(tissues.begin(), tissues.end());
   tissues.erase(std::unique(tissues.begin(), tissues.end()), tissues.end());
   const bool agreed = counts_agree();
-  double least = kTooDear;
+  double least = max_price;
   TissueId best = 0;
   bool found = false;
   const auto give = [&](TissueId tissue) {
@@ -318,7 +320,7 @@ bool PatchMender::unite(const std::vector<TetId>& group) {
   for (const TissueId tissue : tissues) {
     double cost = 0;
     for (const TetId t : group) cost += complex_.tissue(t) == tissue ? 0 : price(t, tissue);
-    if (cost >= least) continue;
+    if (cost > least || (found && cost == least)) continue;
     give(tissue);
     bool sound = std::ranges::all_of(vertices, [&](VertexId v) { return star_defect(complex_, v) == 0; });
     if (sound && agreed) {
@@ -337,17 +339,14 @@ bool PatchMender::unite(const std::vector<TetId>& group) {
 }
 
 // Neighbourhoods of what is singular are given to one tissue each.
-bool PatchMender::untangle() {
-  constexpr int kMaxRings = 3;
-  for (const VertexId v : singular_) { const Vec3 p=mesh_.points_mm[v]; fprintf(stderr,"  singular at %.2f %.2f %.2f defect %u:",p.x,p.y,p.z,star_defect(complex_,v)); for (const TetId t : complex_.tets_of_vertex[v]) fprintf(stderr," %d%s%s",complex_.tissue(t),contents_.fixed[t]?"f":"",is_bad_[t]?"b":""); fprintf(stderr,"\n"); }
-  for (int rings = 1; rings <= kMaxRings; ++rings) {
+bool PatchMender::untangle(int max_rings, double max_price) {
+  for (int rings = 1; rings <= max_rings && !singular_.empty(); ++rings) {
     for (const VertexId v : singular_) {
-      if (star_defect(complex_, v) > 0) unite(tets_around(v, rings));
+      if (star_defect(complex_, v) > 0) unite(tets_around(v, rings), max_price);
     }
     singular_ = singular_among(complex_, inner_vertices());
-    if (singular_.empty()) return true;
   }
-  return false;
+  return singular_.empty();
 }
 
 double PatchMender::price(TetId t, TissueId tissue) const {

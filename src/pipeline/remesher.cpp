@@ -18,6 +18,9 @@
 namespace anatomesh {
 namespace {
 
+// Of the progress, before all is meshed anew.
+constexpr double kLocalShare = 0.2;
+
 // Everything but the voxels.
 LabelImage grid_of(const LabelImage& image) {
   return {image.size, image.spacing_mm, image.origin_mm, image.direction, {}};
@@ -248,7 +251,7 @@ void Remesher::Impl::take(TissueImage image, const std::vector<Label>& numbered,
 }
 
 bool Remesher::Impl::update_here(const LabelImage& changed, UpdateReport& report, const Progress& progress) {
-  const Stage stage(progress, "update", 0, 0.3);
+  const Stage stage(progress, "update", 0, kLocalShare);
   const Options options = for_labels(options_, changed);
   TissueImage after = make_tissue_image(changed, options.labels);
   std::vector<std::string> warnings;
@@ -272,7 +275,7 @@ bool Remesher::Impl::update_here(const LabelImage& changed, UpdateReport& report
   report.reason = local.failure;
   if (!local.failure.empty()) return false;
   report.new_tets = local.new_tets;
-  stage.at(1);
+  stage.check_cancelled();
   kept_ = std::move(kept);
   weights_ = std::move(change.weights);
   take(std::move(after), all, std::move(warnings));
@@ -286,10 +289,17 @@ UpdateReport Remesher::Impl::update(const LabelImage& changed, const Progress& p
   const ThreadLimit threads(options_.threads);
   UpdateReport report;
   if (!update_here(changed, report, progress)) {
-    mesh_whole(changed, for_labels(options_, changed), progress);
+    Progress rest = progress;
+    if (progress.report) {
+      rest.report = [&](std::string_view stage, double share) {
+        progress.report(stage, kLocalShare + (1 - kLocalShare) * share);
+      };
+    }
+    mesh_whole(changed, for_labels(options_, changed), rest);
     report.whole = true;
     report.new_tets = result_.mesh.tets.size();
   }
+  if (progress.report) progress.report("update", 1);
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return report;
 }
