@@ -37,6 +37,7 @@ namespace {
 constexpr int kReachBlocks = 2;  // of a change around it, blocks of voxels
 // Each with finer surfaces where the one before lacked something, and with one ring more of tetrahedra around.
 constexpr int kAttempts = 3;
+constexpr double kLarge = 0.4;  // of the mesh; a patch of more is not tried again
 constexpr double kFiner = 0.65, kFinest = 0.4;  // of the size before; of the mean voxel spacing
 constexpr int kMargin = 6;       // voxels around the patch that the field looks at
 
@@ -198,7 +199,7 @@ void LocalUpdate::refine() {
   const PatchSizes sizes(part_, surface_mm_, is_changed_);
   as_tissue(true);
   MeshEditor editor(mesh_);
-  const std::size_t most = 2 * editor.tissue_tets() + kept_.mesh.tets.size();
+  const std::size_t most = 2 * editor.tissue_tets() + kept_.mesh.tets.size() / 4;
   const std::size_t splits = refine_edges(editor, bounds_, [&](Vec3 p) { return sizes.at(p); }, most, stage_);
   mesh_ = editor.result();
   as_tissue(false);
@@ -375,7 +376,10 @@ LocalResult LocalUpdate::run() {
     take(1 + n);
     std::optional<KeptMesh> next = attempt(result.failure);
     if (trace()) std::fprintf(stderr, "  attempt %d: %s\n", n, next ? "ok" : result.failure.c_str());
-    if (!next) continue;
+    if (!next) {
+      if (static_cast<double>(patch_.tets.size()) > kLarge * static_cast<double>(kept_.mesh.tets.size())) break;
+      continue;
+    }
     result.failure.clear();
     result.new_tets = tissue_tets(mesh_);
     next->mesh = std::move(kept_.mesh);

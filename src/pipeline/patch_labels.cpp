@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <map>
 #include <numeric>
+#include <set>
 #include <span>
 #include <utility>
 
@@ -109,13 +108,6 @@ class PatchMender {
       std::erase_if(marked, [&](TetId t) { return !contents_.may_refine[t]; });
       if (!singular_.empty() && marked.empty()) untangle(kFewRings, kMaxPrice);
       mesh_.tissues = complex_.mesh.tissues;
-      if (getenv("REMESH_TRACE")) {
-        fprintf(stderr, "   mend %d: piece changes %zu single changes %zu singular %zu marked %zu agree %d\n", round, repair.changed.size(), changed.size(), singular_.size(), marked.size(), counts_agree());
-        const auto components = mending_.components.count_by_tissue(mending_.image.labels.size());
-        std::vector<std::uint32_t> pieces(components.size(), 0);
-        for (const auto& piece : pieces_.list) pieces[piece.tissue] += piece.tets > 0;
-        for (std::size_t t = 1; t < components.size(); ++t) if (mending_.rest.counted[t] && pieces[t] + mending_.rest.closed[t] != components[t]) fprintf(stderr, "     tissue %zu pieces %u closed %u components %u\n", t, pieces[t], mending_.rest.closed[t], components[t]);
-      }
       if (singular_.empty() && counts_agree()) return true;
       if (round >= kMaxRounds || !refine(marked, stage)) break;
     }
@@ -140,6 +132,7 @@ class PatchMender {
   const LabelMending& mending_;
   std::map<std::array<double, 3>, VertexId> border_;  // places of the border's vertices
   std::map<VertexId, std::vector<RestPieces::Contact>> contacts_;
+  std::set<std::pair<TissueId, std::uint32_t>> lone_;  // pieces of the rest that touch the patch at vertices only
   TetComplex complex_;
   Pieces pieces_;
   std::vector<char> is_border_;
@@ -185,6 +178,8 @@ void PatchMender::take_mesh(bool may_refine) {
 // Tetrahedra that touch the same piece of the rest.
 void PatchMender::join_beyond() {
   complex_.joined_beyond.clear();
+  lone_.clear();
+  for (const auto& contact : mending_.rest.contacts) lone_.emplace(contact.tissue, contact.piece);
   std::map<std::pair<TissueId, std::uint32_t>, TetId> first;
   for (VertexId v = 0; v < mesh_.points_mm.size(); ++v) {
     if (!is_border_[v]) continue;
@@ -196,6 +191,7 @@ void PatchMender::join_beyond() {
     for (const auto& contact : contacts->second) {
       for (const TetId t : complex_.tets_of_vertex[v]) {
         if (mesh_.tissues[t] != contact.tissue) continue;
+        lone_.erase({contact.tissue, contact.piece});
         const auto [at, is_new] = first.try_emplace(std::pair(contact.tissue, contact.piece), t);
         if (!is_new && at->second != t) complex_.joined_beyond.push_back({at->second, t});
       }
@@ -252,6 +248,7 @@ bool PatchMender::counts_agree() const {
   const auto components = mending_.components.count_by_tissue(mending_.image.labels.size());
   std::vector<std::uint32_t> pieces(components.size(), 0);
   for (const auto& piece : pieces_.list) pieces[piece.tissue] += piece.tets > 0;
+  for (const auto& [tissue, piece] : lone_) ++pieces[tissue];
   for (std::size_t t = 1; t < components.size(); ++t) {
     if (!mending_.rest.counted[t] && pieces[t] == 0) continue;
     if (!mending_.rest.counted[t] || pieces[t] + mending_.rest.closed[t] != components[t]) return false;

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <iostream>
 #include <random>
 #include <string>
 
@@ -221,7 +220,7 @@ TEST(Remesher, TenStrokesDoNotDegradeTheMesh) {
     image = painted(image, ball, static_cast<Label>(n % 3 == 0 ? 0 : 1 + n % 4), tissue);
     const UpdateReport report = mesher.update(image);
     local += !report.whole;
-    if (report.whole) std::cerr << n << ": " << report.reason << "\n";
+
     expect_good(image, mesher);
   }
   EXPECT_GE(local, 6);
@@ -333,7 +332,7 @@ TEST(Remesher, LabelsNamedInOptionsMayVanish) {
 #ifdef __SANITIZE_ADDRESS__
 constexpr unsigned kSeeds = 4;  // each takes twenty times as long
 #else
-constexpr unsigned kSeeds = 30;
+constexpr unsigned kSeeds = 12;
 #endif
 
 TEST(Remesher, GuaranteesHoldAfterRandomChangesOfSmallImages) {
@@ -343,8 +342,9 @@ TEST(Remesher, GuaranteesHoldAfterRandomChangesOfSmallImages) {
     const auto between = [&](int low, int high) {
       return low + static_cast<int>(random() % static_cast<unsigned>(high - low + 1));
     };
-    const int side = between(8, 24);
-    LabelImage image = seed % 2 ? testing::random_blobs(seed, side, between(3, 10)) : testing::noise(seed, between(4, 8), 3);
+    const int side = between(8, 20);
+    LabelImage image = seed % 3 ? testing::random_blobs(seed, side, between(3, 10))
+                                : testing::noise(seed, between(4, 6), 3);
     for (std::size_t a = 0; a < 3; ++a) image.spacing_mm[a] = 0.4 + 0.2 * between(0, 8);
     Remesher mesher(image);
     const int size = static_cast<int>(image.size[0]);
