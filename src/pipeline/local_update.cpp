@@ -149,7 +149,7 @@ class LocalUpdate {
   std::optional<SurfaceField> field_;
   std::optional<VolumeShifts> shifts_;
   std::vector<char> is_changed_;
-  std::vector<double> surface_mm_, wanted_mm3_;
+  std::vector<double> surface_mm_, area_mm2_, wanted_mm3_;
   Clock clock_;
 };
 
@@ -163,18 +163,32 @@ double first_size(const TissueImage& image, std::size_t tissue, double area_mm2,
   return kEdge * std::sqrt(wrong / kWrongShare) * thick;
 }
 
+// The tissues' boundaries in the changed image.
+std::vector<double> changed_areas(const ImageChange& change, std::vector<double> areas_mm2) {
+  std::array<std::int64_t, 3> first;
+  std::array<int, 3> size;
+  for (std::size_t a = 0; a < 3; ++a) {
+    first[a] = change.box.low[a] - 1;
+    size[a] = static_cast<int>(change.box.high[a] + 1 - first[a]);
+  }
+  const std::vector<double> gone = boundary_areas_mm2(part_of(change.before, first, size)),
+                            come = boundary_areas_mm2(part_of(change.after, first, size));
+  for (std::size_t t = 0; t < areas_mm2.size(); ++t) areas_mm2[t] += come[t] - gone[t];
+  return areas_mm2;
+}
+
 // A tissue that the image has had before keeps the size of its surface, but for what it has become thinner.
 void LocalUpdate::choose_sizes() {
   const TissueImage &before = change_.before, &after = change_.after;
-  const std::vector<double> area = boundary_areas_mm2(after), old_area = boundary_areas_mm2(before);
+  area_mm2_ = changed_areas(change_, kept_.area_mm2);
   surface_mm_ = kept_.surface_mm;
   for (std::size_t t = 1; t < tissues_; ++t) {
     if (after.counts[t] == 0) continue;
-    const double size = first_size(after, t, area[t], wanted_[t]);
+    const double size = first_size(after, t, area_mm2_[t], wanted_[t]);
     if (surface_mm_[t] == 0 || before.counts[t] == 0) {
       surface_mm_[t] = size;
     } else {
-      surface_mm_[t] *= std::min(1.0, size / first_size(before, t, old_area[t], wanted_[t]));
+      surface_mm_[t] *= std::min(1.0, size / first_size(before, t, kept_.area_mm2[t], wanted_[t]));
     }
     surface_mm_[t] = std::max(surface_mm_[t], kFinest * voxel_mm());
   }
@@ -336,6 +350,7 @@ KeptMesh LocalUpdate::measured() const {
   const std::vector<double> gone = volumes_of(patch_.mesh, tissues_), come = volumes_of(mesh_, tissues_);
   for (std::size_t t = 0; t < tissues_; ++t) next.volume_mm3[t] += come[t] - gone[t];
   next.surface_mm = kept_.surface_mm;
+  next.area_mm2 = area_mm2_;
   return next;
 }
 
@@ -408,7 +423,9 @@ void LocalUpdate::take(int rings) {
 
 }  // namespace
 
-void measure_kept(KeptMesh& kept, std::size_t tissues) {
+void measure_kept(KeptMesh& kept, const TissueImage& image) {
+  const std::size_t tissues = image.labels.size();
+  kept.area_mm2 = boundary_areas_mm2(image);
   kept.volume_mm3 = volumes_of(kept.mesh, tissues);
   const TissueMesh& mesh = kept.mesh;
   constexpr TissueId kNone = 0xffff;

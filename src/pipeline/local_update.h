@@ -18,14 +18,15 @@ namespace anatomesh {
 /// A finished mesh with its background, and what is known of it, by tissue.
 struct KeptMesh {
   TissueMesh mesh;
-  std::vector<Fidelity> fidelity;   ///< voxels may be off in a mesh that has been updated: see describe
-  std::vector<Fidelity> inside;     ///< the same of the centres inside the original image alone
-  std::vector<double> volume_mm3;   ///< of its tetrahedra
-  std::vector<double> surface_mm;   ///< mean length of the edges along its surface
+  std::vector<Fidelity> fidelity;
+  std::vector<Fidelity> inside;    ///< the same of the centres inside the original image alone
+  std::vector<double> volume_mm3;  ///< of its tetrahedra
+  std::vector<double> surface_mm;  ///< mean length of the edges along its surface, as the whole was meshed last
+  std::vector<double> area_mm2;    ///< of its boundary in the image: see boundary_areas_mm2()
 };
 
-/// Volumes and surface_mm of a mesh. Cost: some passes over it.
-void measure_kept(KeptMesh& kept, std::size_t tissues);
+/// Fills in the last three from the mesh and its image. Cost: some passes over both.
+void measure_kept(KeptMesh& kept, const TissueImage& image);
 
 /// Where two images of the same grid and numbering of tissues differ.
 struct ImageChange {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "base/parallel.h"
@@ -99,6 +100,7 @@ void renumber(KeptMesh& kept, const std::vector<Label>& from, const std::vector<
   renumber(kept.inside, from, to);
   renumber(kept.volume_mm3, from, to);
   renumber(kept.surface_mm, from, to);
+  renumber(kept.area_mm2, from, to);
 }
 
 // Where they differ; the same numbers mean the same in both.
@@ -109,18 +111,27 @@ void find_changes(ImageChange& change) {
     low[n] = std::min(a.first[n], b.first[n]);
     high[n] = std::max(a.first[n] + a.size[n], b.first[n] + b.size[n]);
   }
+  // Rows are compared as a whole where the crops are the same, as they mostly are.
+  const bool same_crop = a.first == b.first && a.size == b.size;
+  const auto row_differs = [&](std::int64_t j, std::int64_t k) {
+    if (!same_crop) return true;
+    const std::size_t begin = a.offset(0, static_cast<int>(j - a.first[1]), static_cast<int>(k - a.first[2]));
+    const auto from = a.voxels.begin() + static_cast<std::ptrdiff_t>(begin);
+    return !std::equal(from, from + a.size[0], b.voxels.begin() + static_cast<std::ptrdiff_t>(begin));
+  };
+  const auto at = [](const TissueImage& image, std::int64_t i, std::int64_t j, std::int64_t k) {
+    return image.at_or_background(static_cast<int>(i - image.first[0]), static_cast<int>(j - image.first[1]),
+                                  static_cast<int>(k - image.first[2]));
+  };
   std::vector<std::vector<std::array<std::int64_t, 3>>> slices(static_cast<std::size_t>(high[2] - low[2]));
   parallel_for(
       slices.size(),
       [&](std::size_t s) {
         const std::int64_t k = low[2] + static_cast<std::int64_t>(s);
-        const auto at = [&](const TissueImage& image, std::int64_t i, std::int64_t j) {
-          return image.at_or_background(static_cast<int>(i - image.first[0]), static_cast<int>(j - image.first[1]),
-                                        static_cast<int>(k - image.first[2]));
-        };
         for (std::int64_t j = low[1]; j < high[1]; ++j) {
+          if (!row_differs(j, k)) continue;
           for (std::int64_t i = low[0]; i < high[0]; ++i) {
-            if (at(a, i, j) != at(b, i, j)) slices[s].push_back({i, j, k});
+            if (at(a, i, j, k) != at(b, i, j, k)) slices[s].push_back({i, j, k});
           }
         }
       },
@@ -196,7 +207,7 @@ void Remesher::Impl::mesh_whole(const LabelImage& image, const Options& options,
   kept.mesh = joined(made.deformed.mesh, made.deformed.beyond);
   kept.fidelity = std::move(made.deformed.final.tissues);
   kept.inside = std::move(made.deformed.final.inside);
-  measure_kept(kept, made.image.labels.size());
+  measure_kept(kept, made.image);
   kept_ = std::move(kept);
   image_ = std::move(made.image);
   weights_ = std::move(made.deformed.voxel_weights);
@@ -231,6 +242,7 @@ void Remesher::Impl::take(TissueImage image, const std::vector<Label>& numbered,
     renumber(kept_.inside, numbered, labels);
     renumber(kept_.volume_mm3, numbered, labels);
     renumber(kept_.surface_mm, numbered, labels);
+    renumber(kept_.area_mm2, numbered, labels);
     renumber(image.counts, numbered, labels);
     image.labels = labels;
   }
@@ -259,8 +271,9 @@ bool Remesher::Impl::update_here(const LabelImage& changed, UpdateReport& report
   std::vector<Label> all;
   std::ranges::set_union(image_.labels, after.labels, std::back_inserter(all));
   const std::vector<Label> before_labels = image_.labels;
-  TissueImage before = image_;
-  renumber(before, all);
+  std::optional<TissueImage> renumbered;
+  if (before_labels != all) renumber(renumbered.emplace(image_), all);
+  const TissueImage& before = renumbered ? *renumbered : image_;
   renumber(after, all);
   ImageChange change = {before, after, {}, {}, {}};
   find_changes(change);
