@@ -148,8 +148,8 @@ std::size_t split_tets(MeshEditor& mesh, const ShapeBounds& bounds, const std::v
     std::vector<Edge> edges;
     for (const auto& [i, j] : kEdges) {
       if (is_cut(mesh, tet[i], tet[j])) continue;
-      edges.push_back({norm(mesh.point(tet[i]) - mesh.point(tet[j])), std::min(tet[i], tet[j]),
-                       std::max(tet[i], tet[j])});
+      edges.push_back(
+          {norm(mesh.point(tet[i]) - mesh.point(tet[j])), std::min(tet[i], tet[j]), std::max(tet[i], tet[j])});
     }
     std::sort(edges.begin(), edges.end());
     for (const Edge& edge : edges) {

@@ -20,7 +20,8 @@ std::size_t refine_edges(MeshEditor& mesh, const ShapeBounds& bounds, const std:
 /// them. Returns the number of splits.
 std::size_t split_tets(MeshEditor& mesh, const ShapeBounds& bounds, const std::vector<TetId>& tets);
 
-/// Splits the edges at a vertex, the longest first, where the halves lie inside the bounds. Returns the number of splits.
+/// Splits the edges at a vertex, the longest first, where the halves lie inside the bounds. Returns the number of
+/// splits.
 std::size_t split_around(MeshEditor& mesh, const ShapeBounds& bounds, VertexId v);
 
 /// Splits inner edges of tetrahedra that have all their vertices on interfaces, the longest first, where the halves

@@ -40,8 +40,8 @@ class VolumeShifts {
   std::vector<std::vector<Shift>> by_low_;
 };
 
-/// What the interface faces say of each tissue's volume (mm^3), by the divergence theorem. In a part of a mesh it is off
-/// by what the cut would add, which stays the same as long as the cut does.
+/// What the interface faces say of each tissue's volume (mm^3), by the divergence theorem. In a part of a mesh it is
+/// off by what the cut would add, which stays the same as long as the cut does.
 std::vector<double> enclosed_volumes(const TissueMesh& mesh, const InterfaceFaces& interfaces, std::size_t tissues);
 
 }  // namespace anatomesh

@@ -139,7 +139,8 @@ TissueImage make_tissue_image(const LabelImage& image, const std::vector<Label>&
   return tissues;
 }
 
-TissueImage part_of(const TissueImage& image, const std::array<std::int64_t, 3>& first, const std::array<int, 3>& size) {
+TissueImage part_of(const TissueImage& image, const std::array<std::int64_t, 3>& first,
+                    const std::array<int, 3>& size) {
   TissueImage part;
   part.size = size;
   part.first = first;

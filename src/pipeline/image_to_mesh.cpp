@@ -114,8 +114,8 @@ Meshing mesh_image(const LabelImage& image, const Options& options, bool keeps_b
 void describe_result(Meshing& made, std::span<const double> wanted) {
   Result& result = made.result;
   const LatticeOptions& lattice = result.options.lattice;
-  result.tissues = describe_tissues(made.image, wanted, made.deformed.lattice, made.deformed.final.inside,
-                                    made.deformed.mesh);
+  result.tissues =
+      describe_tissues(made.image, wanted, made.deformed.lattice, made.deformed.final.inside, made.deformed.mesh);
   describe_losses(result.tissues, result.warnings);
   describe_shrinkage(made.deformed.mesh, made.image, result.warnings);
   if (lattice.fidelity_stage == FidelityStage::final && lattice.max_elements == 0)

@@ -2,9 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <cstdio>
-#include <chrono>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -37,22 +34,10 @@ namespace {
 constexpr int kReachBlocks = 2;  // of a change around it, blocks of voxels
 // Each with finer surfaces where the one before lacked something, and with one ring more of tetrahedra around.
 constexpr int kAttempts = 3;
-constexpr double kLarge = 0.4;  // of the mesh; a patch of more is not tried again
+// Of the mesh: a patch of more is not tried again, and one of the most not at all.
+constexpr double kLarge = 0.4, kMost = 0.8;
 constexpr double kFiner = 0.65, kFinest = 0.4;  // of the size before; of the mean voxel spacing
-constexpr int kMargin = 6;       // voxels around the patch that the field looks at
-
-bool trace() {
-  static const bool on = std::getenv("REMESH_TRACE") != nullptr;
-  return on;
-}
-struct Clock {
-  std::chrono::steady_clock::time_point t = std::chrono::steady_clock::now();
-  void lap(const char* what, std::size_t n = 0) {
-    const auto now = std::chrono::steady_clock::now();
-    if (trace()) std::fprintf(stderr, "  %-18s %8.1f ms  %zu\n", what, 1e3 * std::chrono::duration<double>(now - t).count(), n);
-    t = now;
-  }
-};
+constexpr int kMargin = 6;                      // voxels around the patch that the field looks at
 
 ShapeBounds bounds_of(const DeformOptions& o) {
   return ShapeBounds::from_degrees(o.min_dihedral_deg, o.max_dihedral_deg, o.min_mean_ratio);
@@ -90,9 +75,7 @@ std::vector<char> mark_changed(const TissueImage& part, const ImageChange& chang
   return marked;
 }
 
-void give_number(TissueMesh& mesh, TissueId from, TissueId to) {
-  std::ranges::replace(mesh.tissues, from, to);
-}
+void give_number(TissueMesh& mesh, TissueId from, TissueId to) { std::ranges::replace(mesh.tissues, from, to); }
 
 class LocalUpdate {
  public:
@@ -119,13 +102,20 @@ class LocalUpdate {
   void improve();
   void settle_here(int sweeps);
   void as_tissue(bool background_too) {
-    if (background_too) give_number(mesh_, 0, air_);
-    else give_number(mesh_, air_, 0);
+    if (background_too)
+      give_number(mesh_, 0, air_);
+    else
+      give_number(mesh_, air_, 0);
   }
   double voxel_mm() const {
     const Vec3 s = change_.after.spacing_mm;
     return (s.x + s.y + s.z) / 3;
   }
+  double share_of_mesh() const {
+    return static_cast<double>(patch_.tets.size()) / static_cast<double>(kept_.mesh.tets.size());
+  }
+  std::string hindrance() const;
+  void compact();
   void take(int rings);
   std::optional<KeptMesh> attempt(std::string& failure);
   bool is_within_bounds() const;
@@ -150,7 +140,6 @@ class LocalUpdate {
   std::optional<VolumeShifts> shifts_;
   std::vector<char> is_changed_;
   std::vector<double> surface_mm_, area_mm2_, wanted_mm3_;
-  Clock clock_;
 };
 
 // The size along a tissue's surface that image_to_mesh() would begin with, mm.
@@ -214,15 +203,14 @@ void LocalUpdate::refine() {
   as_tissue(true);
   MeshEditor editor(mesh_);
   const std::size_t most = 2 * editor.tissue_tets() + kept_.mesh.tets.size() / 4;
-  const std::size_t splits = refine_edges(editor, bounds_, [&](Vec3 p) { return sizes.at(p); }, most, stage_);
+  refine_edges(
+      editor, bounds_, [&](Vec3 p) { return sizes.at(p); }, most, stage_);
   mesh_ = editor.result();
   as_tissue(false);
-  clock_.lap("refine", splits);
 }
 
 bool LocalUpdate::relabel() {
   vote(mesh_, part_, is_changed_, bounds_);
-  clock_.lap("vote", mesh_.tets.size());
   std::vector<char> counted(tissues_, 0);
   for (const TissueId t : patch_.mesh.tissues) counted[t] = 1;
   for (const TissueId t : mesh_.tissues) counted[t] = 1;
@@ -230,13 +218,10 @@ bool LocalUpdate::relabel() {
     if (is_changed_[v]) counted[part_.voxels[v]] = 1;
   }
   const RestPieces rest = find_rest_pieces(kept_.mesh, patch_, std::move(counted));
-  clock_.lap("rest");
   const ImageComponents components(change_.after);
-  clock_.lap("components");
-  const LabelMending mending = {change_.after, components, part_, rest, patch_.mesh.points_mm, bounds_};
-  const bool mended = mend_labels(mesh_, mending, stage_);
-  clock_.lap("mend", mesh_.tets.size());
-  return mended;
+  const LabelMending mending = {change_.after,         components,       part_,  rest,
+                                patch_.mesh.points_mm, kept_.pieces_off, bounds_};
+  return mend_labels(mesh_, mending, stage_);
 }
 
 void LocalUpdate::settle_here(int sweeps) {
@@ -244,14 +229,12 @@ void LocalUpdate::settle_here(int sweeps) {
   const MeshTopology topology = make_topology(mesh_);
   const AngleGuard guard(mesh_, topology, bounds_, fixed);
   settle(mesh_, topology, guard, *field_, sweeps, *shifts_, stage_);
-  clock_.lap("settle", mesh_.tets.size());
 }
 
 void LocalUpdate::deform() {
   MeshEditor editor(mesh_);
-  const std::size_t splits = split_bridges(editor, bounds_, stage_);
+  split_bridges(editor, bounds_, stage_);
   mesh_ = in_spatial_order(editor.result());
-  clock_.lap("bridges", splits);
   settle_here(6);
 }
 
@@ -269,13 +252,11 @@ void LocalUpdate::improve() {
     as_tissue(false);
   };
   coarsen_to(ShapeBounds::from_degrees(28, 142, 0.3));
-  clock_.lap("coarsen", mesh_.tets.size());
   for (int n = 0; n < 3; ++n) {
     MeshEditor editor(mesh_);
     flip_interfaces(editor, *field_, bounds_, stage_);
     improve_shapes(editor, bounds_, kEnoughSlack, stage_);
     mesh_ = editor.result();
-    clock_.lap("flips", mesh_.tets.size());
     settle_here(4);
   }
   for (int n = 0; n < 2; ++n) coarsen_to(bounds_);
@@ -285,7 +266,6 @@ void LocalUpdate::improve() {
     improve_shapes(editor, bounds_, kEnoughSlack, stage_);
   }
   mesh_ = editor.result();
-  clock_.lap("finish", mesh_.tets.size());
 }
 
 bool LocalUpdate::is_within_bounds() const {
@@ -342,7 +322,8 @@ std::vector<char> LocalUpdate::lacking(const KeptMesh& next) const {
 // What is known of the mesh with the patch as it is now.
 KeptMesh LocalUpdate::measured() const {
   const TissueImage old = part_of(change_.before, part_.first, part_.size);
-  const MeshFidelity before = measure_fidelity(patch_.mesh, old, stage_), after = measure_fidelity(mesh_, part_, stage_);
+  const MeshFidelity before = measure_fidelity(patch_.mesh, old, stage_),
+                     after = measure_fidelity(mesh_, part_, stage_);
   KeptMesh next;
   next.fidelity = updated(kept_.fidelity, before.tissues, after.tissues);
   next.inside = updated(kept_.inside, before.inside, after.inside);
@@ -351,6 +332,8 @@ KeptMesh LocalUpdate::measured() const {
   for (std::size_t t = 0; t < tissues_; ++t) next.volume_mm3[t] += come[t] - gone[t];
   next.surface_mm = kept_.surface_mm;
   next.area_mm2 = area_mm2_;
+  next.pieces_off = kept_.pieces_off;
+  next.box = kept_.box;
   return next;
 }
 
@@ -372,38 +355,61 @@ std::optional<KeptMesh> LocalUpdate::attempt(std::string& failure) {
   deform();
   improve();
   KeptMesh next = measured();
-  clock_.lap("measure");
   const std::vector<char> lacks = lacking(next);
   const auto worst = std::ranges::find(lacks, 1);
   if (is_within_bounds() && worst == lacks.end()) return next;
-  failure = worst == lacks.end() ? "a tetrahedron near the change could not be brought inside the bounds"
-                                 : "label " + std::to_string(change_.after.labels[static_cast<std::size_t>(worst - lacks.begin())]) +
-                                       " would have had less than the fidelity asked for, or another volume";
+  failure = worst == lacks.end()
+                ? "a tetrahedron near the change could not be brought inside the bounds"
+                : "label " + std::to_string(change_.after.labels[static_cast<std::size_t>(worst - lacks.begin())]) +
+                      " would have had less than the fidelity asked for, or another volume";
   make_finer(lacks);
   return std::nullopt;
 }
 
+// Where nothing can be done, or nothing would be gained.
+std::string LocalUpdate::hindrance() const {
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (change_.box.low[a] < kept_.box.low[a] || change_.box.high[a] > kept_.box.high[a])
+      return "the change goes beyond the background that is kept around the tissues";
+  }
+  if (tissues_ > std::numeric_limits<TissueId>::max()) return "the image has as many labels as are possible";
+  return {};
+}
+
 LocalResult LocalUpdate::run() {
-  choose_sizes();
   LocalResult result;
+  result.failure = hindrance();
+  if (!result.failure.empty()) return result;
+  choose_sizes();
+  compact();
   for (int n = 0; n < kAttempts; ++n) {
     progress_.at(static_cast<double>(n) / kAttempts);
     take(1 + n);
+    if (share_of_mesh() > kMost) {
+      result.failure = "the change reaches most of the mesh";
+      break;
+    }
     std::optional<KeptMesh> next = attempt(result.failure);
-    if (trace()) std::fprintf(stderr, "  attempt %d: %s\n", n, next ? "ok" : result.failure.c_str());
     if (!next) {
-      if (static_cast<double>(patch_.tets.size()) > kLarge * static_cast<double>(kept_.mesh.tets.size())) break;
+      if (share_of_mesh() > kLarge) break;
       continue;
     }
     result.failure.clear();
     result.new_tets = tissue_tets(mesh_);
     next->mesh = std::move(kept_.mesh);
+    next->unused_vertices = kept_.unused_vertices + put_patch(next->mesh, patch_, mesh_);
     kept_ = std::move(*next);
-    put_patch(kept_.mesh, patch_, mesh_);
-    clock_.lap("put");
     break;
   }
   return result;
+}
+
+// Vertices that earlier updates have left behind.
+void LocalUpdate::compact() {
+  constexpr std::size_t kFew = 4;  // one in so many
+  if (kept_.unused_vertices * kFew < kept_.mesh.points_mm.size()) return;
+  kept_.mesh = with_cushion_last(kept_.mesh);
+  kept_.unused_vertices = 0;
 }
 
 void LocalUpdate::take(int rings) {
@@ -411,14 +417,10 @@ void LocalUpdate::take(int rings) {
   for (const auto& voxel : change_.voxels) blocks.add(voxel);
   blocks.dilate(kReachBlocks);
   patch_ = take_patch(kept_.mesh, blocks, change_.after.spacing_mm, rings);
-  clock_.lap("patch", patch_.tets.size());
   part_ = box_around(change_.after, change_.box, patch_.mesh);
   is_changed_ = mark_changed(part_, change_);
-  clock_.lap("part", part_.voxels.size());
   field_.emplace(part_, part_of(change_.after, change_.weights, part_.first, part_.size));
-  clock_.lap("field", part_.voxels.size());
   wanted_mm3_ = wanted_volumes();
-  clock_.lap("volumes");
 }
 
 }  // namespace
@@ -426,6 +428,16 @@ void LocalUpdate::take(int rings) {
 void measure_kept(KeptMesh& kept, const TissueImage& image) {
   const std::size_t tissues = image.labels.size();
   kept.area_mm2 = boundary_areas_mm2(image);
+  kept.unused_vertices = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    kept.box.low[a] = image.first[a];
+    kept.box.high[a] = image.first[a] + image.size[a];
+  }
+  const std::vector<std::uint32_t> components = ImageComponents(image).count_by_tissue(tissues);
+  const RestPieces pieces = find_rest_pieces(kept.mesh, {}, std::vector<char>(tissues, 1));
+  kept.pieces_off.assign(tissues, 0);
+  for (std::size_t t = 1; t < tissues; ++t)
+    kept.pieces_off[t] = std::abs(static_cast<int>(pieces.closed[t]) - static_cast<int>(components[t]));
   kept.volume_mm3 = volumes_of(kept.mesh, tissues);
   const TissueMesh& mesh = kept.mesh;
   constexpr TissueId kNone = 0xffff;

@@ -23,9 +23,12 @@ struct KeptMesh {
   std::vector<double> volume_mm3;  ///< of its tetrahedra
   std::vector<double> surface_mm;  ///< mean length of the edges along its surface, as the whole was meshed last
   std::vector<double> area_mm2;    ///< of its boundary in the image: see boundary_areas_mm2()
+  std::vector<int> pieces_off;     ///< by how many its pieces may be off the components in the image: as the whole was
+  IndexBox box;                    ///< that the mesh fills at least
+  std::size_t unused_vertices = 0;
 };
 
-/// Fills in the last three from the mesh and its image. Cost: some passes over both.
+/// Fills in all but the mesh and its fidelity. Cost: some passes over the mesh and its image.
 void measure_kept(KeptMesh& kept, const TissueImage& image);
 
 /// Where two images of the same grid and numbering of tissues differ.
@@ -38,8 +41,8 @@ struct ImageChange {
 };
 
 struct LocalResult {
-  std::string failure;           ///< why the mesh could not be mended locally; empty: it was, and `kept` is up to date
-  std::size_t new_tets = 0;      ///< tetrahedra in the place of the old ones there, without the background
+  std::string failure;       ///< why the mesh could not be mended locally; empty: it was, and `kept` is up to date
+  std::size_t new_tets = 0;  ///< tetrahedra in the place of the old ones there, without the background
 };
 
 /// Brings the mesh up to date with the image. wanted: F by tissue. Leaves `kept` as it was where it fails. Throws

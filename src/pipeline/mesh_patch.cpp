@@ -75,8 +75,10 @@ void VoxelBlocks::dilate(int blocks) {
     for (std::size_t n = 0; n < before.size(); ++n) {
       if (!before[n]) continue;
       const std::int64_t at = static_cast<std::int64_t>(n) / step[a] % size_[a];
-      const std::int64_t first = std::max<std::int64_t>(-blocks, -at), last = std::min<std::int64_t>(blocks, size_[a] - 1 - at);
-      for (std::int64_t d = first; d <= last; ++d) marked_[static_cast<std::size_t>(static_cast<std::int64_t>(n) + d * step[a])] = 1;
+      const std::int64_t first = std::max<std::int64_t>(-blocks, -at),
+                         last = std::min<std::int64_t>(blocks, size_[a] - 1 - at);
+      for (std::int64_t d = first; d <= last; ++d)
+        marked_[static_cast<std::size_t>(static_cast<std::int64_t>(n) + d * step[a])] = 1;
     }
   }
 }
@@ -148,7 +150,7 @@ MeshPatch take_patch(const TissueMesh& whole, const VoxelBlocks& blocks, Vec3 sp
   return patch;
 }
 
-void put_patch(TissueMesh& whole, const MeshPatch& patch, const TissueMesh& changed) {
+std::size_t put_patch(TissueMesh& whole, const MeshPatch& patch, const TissueMesh& changed) {
   std::unordered_map<Vec3, VertexId, PointHash> border;
   std::vector<VertexId> free;
   for (std::size_t v = 0; v < patch.vertices.size(); ++v) {
@@ -191,6 +193,7 @@ void put_patch(TissueMesh& whole, const MeshPatch& patch, const TissueMesh& chan
     whole.tets.pop_back();
     whole.tissues.pop_back();
   }
+  return free.size() - used;
 }
 
 // Where surfaces are manifold, tetrahedra of one tissue at one vertex hang together.
@@ -225,8 +228,7 @@ RestPieces find_rest_pieces(const TissueMesh& whole, const MeshPatch& patch, std
       touches[root(w)] = 1;
       rest.contacts.push_back({static_cast<VertexId>(v), static_cast<TissueId>(tissue), root(w)});
     }
-    for (std::size_t v = 0; v < parent.size(); ++v)
-      rest.closed[tissue] += seen[v] && parent[v] == v && !touches[v];
+    for (std::size_t v = 0; v < parent.size(); ++v) rest.closed[tissue] += seen[v] && parent[v] == v && !touches[v];
   }
   return rest;
 }

@@ -50,10 +50,10 @@ struct RestPieces {
 };
 
 struct MeshPatch {
-  TissueMesh mesh;                    ///< with vertices of its own
-  std::vector<TetId> tets;            ///< the same in the whole mesh
-  std::vector<VertexId> vertices;     ///< by vertex: the same in the whole mesh
-  std::vector<char> is_border;        ///< by vertex: on a face to the rest, or of one tetrahedron only
+  TissueMesh mesh;                 ///< with vertices of its own
+  std::vector<TetId> tets;         ///< the same in the whole mesh
+  std::vector<VertexId> vertices;  ///< by vertex: the same in the whole mesh
+  std::vector<char> is_border;     ///< by vertex: on a face to the rest, or of one tetrahedron only
 };
 
 /// The tetrahedra that meet the blocks, and `rings` rings of those that touch them. Cost: some passes over the mesh.
@@ -61,8 +61,8 @@ MeshPatch take_patch(const TissueMesh& whole, const VoxelBlocks& blocks, Vec3 sp
 
 /// Puts `changed` in the place of the patch. It fills the same space, with the same border; vertices of the border are
 /// known by their coordinates. Vertices and tetrahedra take the numbers of those that go; vertices of no tetrahedron
-/// may remain. Cost: linear in the patch.
-void put_patch(TissueMesh& whole, const MeshPatch& patch, const TissueMesh& changed);
+/// may remain: returns how many do. Cost: linear in the patch.
+std::size_t put_patch(TissueMesh& whole, const MeshPatch& patch, const TissueMesh& changed);
 
 /// Vertices that lie on a face of one tetrahedron only.
 std::vector<char> border_vertices(const TissueMesh& mesh);

@@ -61,8 +61,8 @@ std::vector<TissueOutcome> describe_tissues(const TissueImage& image, std::span<
                                             const TissueMesh& mesh) {
   std::vector<TissueOutcome> outcomes;
   for (std::size_t t = 1; t < image.labels.size(); ++t) {
-    outcomes.push_back({image.labels[t], image.counts[t], 0, wanted[t], lattice[t].f1(), lattice[t].f2(),
-                        final[t].f1(), final[t].f2()});
+    outcomes.push_back({image.labels[t], image.counts[t], 0, wanted[t], lattice[t].f1(), lattice[t].f2(), final[t].f1(),
+                        final[t].f2()});
   }
   for (const TissueId t : mesh.tissues) {
     if (t != 0) ++outcomes[t - 1u].tets;

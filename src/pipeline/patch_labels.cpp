@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <map>
 #include <numeric>
 #include <set>
@@ -23,10 +24,10 @@ namespace anatomesh {
 namespace {
 
 constexpr int kMaxRounds = 8;
-constexpr double kMaxPrice = 5;          // voxels that a relabelled tetrahedron may cost
-constexpr double kGoodSlack = 0.03;      // that tetrahedra are improved to between two rounds
+constexpr double kMaxPrice = 5;               // voxels that a relabelled tetrahedron may cost
+constexpr double kGoodSlack = 0.03;           // that tetrahedra are improved to between two rounds
 constexpr int kFewRings = 2, kManyRings = 3;  // of tetrahedra around a singular vertex that are given to one tissue
-constexpr float kSmallest = 0.02f;       // voxels; smaller tetrahedra are not split
+constexpr float kSmallest = 0.02f;            // voxels; smaller tetrahedra are not split
 constexpr int kFewPoints = 3, kManyPoints = 8;
 
 std::array<Vec3, 4> corners_of(const TissueMesh& mesh, TetId t) {
@@ -100,10 +101,10 @@ class PatchMender {
       stage.check_cancelled();
       take_mesh(round < kMaxRounds);
       std::vector<TetId> changed;
-      PieceRepair repair =
-          mend_pieces(complex_, pieces_, mending_.image, mending_.components, contents_);
-      singular_ = mend_single_tets(complex_, pieces_, singular_among(complex_, inner_vertices()),
-                                   [this](TetId t, TissueId tissue) { return price(t, tissue); }, kMaxPrice, changed);
+      PieceRepair repair = mend_pieces(complex_, pieces_, mending_.image, mending_.components, contents_);
+      singular_ = mend_single_tets(
+          complex_, pieces_, singular_among(complex_, inner_vertices()),
+          [this](TetId t, TissueId tissue) { return price(t, tissue); }, kMaxPrice, changed);
       std::vector<TetId> marked = std::move(repair.refine);
       std::erase_if(marked, [&](TetId t) { return !contents_.may_refine[t]; });
       if (!singular_.empty() && marked.empty()) untangle(kFewRings, kMaxPrice);
@@ -138,7 +139,7 @@ class PatchMender {
   std::vector<char> is_border_;
   TetContents contents_;
   std::vector<std::uint32_t> voxel_begin_, voxels_;  // by tetrahedron
-  std::vector<char> is_bad_;  // outside the bounds: background that cannot become a tissue
+  std::vector<char> is_bad_;                         // outside the bounds: background that cannot become a tissue
   std::vector<VertexId> singular_;
 };
 
@@ -210,7 +211,8 @@ void PatchMender::find_voxels() {
   }
   std::vector<TetId> owner(part.voxels.size(), kNoTet);
   for_each_owned_slices(points, mesh_.tets, size, {}, [&](const OwnedSlices& slices) {
-    std::copy(slices.owner.begin(), slices.owner.end(), owner.begin() + static_cast<std::ptrdiff_t>(slices.first * size[0] * size[1]));
+    std::copy(slices.owner.begin(), slices.owner.end(),
+              owner.begin() + static_cast<std::ptrdiff_t>(slices.first * size[0] * size[1]));
   });
   voxel_begin_.assign(mesh_.tets.size() + 1, 0);
   for (const TetId t : owner) {
@@ -251,7 +253,9 @@ bool PatchMender::counts_agree() const {
   for (const auto& [tissue, piece] : lone_) ++pieces[tissue];
   for (std::size_t t = 1; t < components.size(); ++t) {
     if (!mending_.rest.counted[t] && pieces[t] == 0) continue;
-    if (!mending_.rest.counted[t] || pieces[t] + mending_.rest.closed[t] != components[t]) return false;
+    const int found = static_cast<int>(pieces[t] + mending_.rest.closed[t]), wanted = static_cast<int>(components[t]);
+    const bool is_there = found > 0 || wanted == 0;
+    if (!mending_.rest.counted[t] || !is_there || std::abs(found - wanted) > mending_.pieces_off[t]) return false;
   }
   return true;
 }

@@ -24,6 +24,7 @@ struct LabelMending {
   const TissueImage& part;             ///< a box of it around the patch
   const RestPieces& rest;              ///< of the patch's border vertices
   const std::vector<Vec3>& border_mm;  ///< where those are, by vertex of the patch as it was taken
+  const std::vector<int>& pieces_off;  ///< by tissue: by how many its pieces may be off
   ShapeBounds bounds;
 };
 

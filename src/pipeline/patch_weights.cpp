@@ -64,9 +64,9 @@ std::vector<std::uint8_t> part_of(const TissueImage& image, const std::vector<st
   TissueImage part;
   part.first = first;
   part.size = size;
-  std::vector<std::uint8_t> result(static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) *
-                                       static_cast<std::size_t>(size[2]),
-                                   static_cast<std::uint8_t>(kWeightUnit));
+  std::vector<std::uint8_t> result(
+      static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) * static_cast<std::size_t>(size[2]),
+      static_cast<std::uint8_t>(kWeightUnit));
   copy_common(image, weights, part, result, all_of(part));
   return result;
 }

@@ -28,7 +28,7 @@ LabelImage grid_of(const LabelImage& image) {
 }
 
 void check_same_grid(const LabelImage& image, const LabelImage& grid) {
-  const char* what = image.size != grid.size                ? "size"
+  const char* what = image.size != grid.size               ? "size"
                      : image.spacing_mm != grid.spacing_mm ? "spacing"
                      : image.origin_mm != grid.origin_mm   ? "origin"
                      : image.direction != grid.direction   ? "direction"
@@ -101,6 +101,7 @@ void renumber(KeptMesh& kept, const std::vector<Label>& from, const std::vector<
   renumber(kept.volume_mm3, from, to);
   renumber(kept.surface_mm, from, to);
   renumber(kept.area_mm2, from, to);
+  renumber(kept.pieces_off, from, to);
 }
 
 // Where they differ; the same numbers mean the same in both.
@@ -243,6 +244,7 @@ void Remesher::Impl::take(TissueImage image, const std::vector<Label>& numbered,
     renumber(kept_.volume_mm3, numbered, labels);
     renumber(kept_.surface_mm, numbered, labels);
     renumber(kept_.area_mm2, numbered, labels);
+    renumber(kept_.pieces_off, numbered, labels);
     renumber(image.counts, numbered, labels);
     image.labels = labels;
   }

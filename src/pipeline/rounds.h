@@ -17,12 +17,12 @@ namespace anatomesh {
 
 /// A deformed mesh and its fidelity, by tissue.
 struct DeformedMesh {
-  TissueMesh mesh;                ///< with its cushion
-  TissueMesh beyond;              ///< the background around that, where the plan asks for it
+  TissueMesh mesh;                          ///< with its cushion
+  TissueMesh beyond;                        ///< the background around that, where the plan asks for it
   std::vector<std::uint8_t> voxel_weights;  ///< of the surface field, in that case
-  std::vector<Fidelity> lattice;  ///< of the lattice it was deformed from
-  MeshFidelity final;             ///< of the mesh itself
-  double root_mm = 0;             ///< spacing of that lattice's root
+  std::vector<Fidelity> lattice;            ///< of the lattice it was deformed from
+  MeshFidelity final;                       ///< of the mesh itself
+  double root_mm = 0;                       ///< spacing of that lattice's root
 };
 
 /// Refines the lattice and deforms it. With a fidelity judged on the final mesh: refines it again where the deformed

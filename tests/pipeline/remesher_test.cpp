@@ -197,8 +197,8 @@ TEST(Remesher, TissueIsCutInTwo) {
 }
 
 TEST(Remesher, ObliqueLeftHandedAndAnisotropicImages) {
-  for (const LabelImage& plain : {testing::oblique(anatomy()), testing::left_handed(anatomy()),
-                                  testing::anisotropic(anatomy())}) {
+  for (const LabelImage& plain :
+       {testing::oblique(anatomy()), testing::left_handed(anatomy()), testing::anisotropic(anatomy())}) {
     LabelImage image = plain;
     Options options;
     options.frame = Frame::ras;
@@ -343,8 +343,8 @@ TEST(Remesher, GuaranteesHoldAfterRandomChangesOfSmallImages) {
       return low + static_cast<int>(random() % static_cast<unsigned>(high - low + 1));
     };
     const int side = between(8, 20);
-    LabelImage image = seed % 3 ? testing::random_blobs(seed, side, between(3, 10))
-                                : testing::noise(seed, between(4, 6), 3);
+    LabelImage image =
+        seed % 3 ? testing::random_blobs(seed, side, between(3, 10)) : testing::noise(seed, between(4, 6), 3);
     for (std::size_t a = 0; a < 3; ++a) image.spacing_mm[a] = 0.4 + 0.2 * between(0, 8);
     Remesher mesher(image);
     const int size = static_cast<int>(image.size[0]);
