@@ -37,6 +37,7 @@ constexpr int kAttempts = 3;
 // Of the mesh: a patch of more is not tried again, and one of the most not at all.
 constexpr double kLarge = 0.4, kMost = 0.8;
 constexpr double kFiner = 0.65, kFinest = 0.4;  // of the size before; of the mean voxel spacing
+constexpr double kFinerThere = 0.45;            // the first of them at single places
 constexpr int kMargin = 6;                      // voxels around the patch that the field looks at
 
 ShapeBounds bounds_of(const DeformOptions& o) {
@@ -97,7 +98,7 @@ class LocalUpdate {
   void choose_sizes();
   std::vector<double> wanted_volumes() const;
   void refine();
-  bool relabel();
+  std::optional<MendFailure> relabel();
   void deform();
   void improve();
   void settle_here(int sweeps);
@@ -117,6 +118,7 @@ class LocalUpdate {
   std::string hindrance() const;
   void compact();
   void take(int rings);
+  void ask_for_finer(const std::vector<Vec3>& places_mm, const std::vector<char>& tissues);
   std::optional<KeptMesh> attempt(std::string& failure);
   bool is_within_bounds() const;
   std::vector<char> lacking(const KeptMesh& next) const;
@@ -139,6 +141,8 @@ class LocalUpdate {
   std::optional<SurfaceField> field_;
   std::optional<VolumeShifts> shifts_;
   std::vector<char> is_changed_;
+  std::vector<FinePlace> fine_;
+  std::optional<PatchSizes> sizes_;
   std::vector<double> surface_mm_, area_mm2_, wanted_mm3_;
 };
 
@@ -199,17 +203,17 @@ std::vector<double> LocalUpdate::wanted_volumes() const {
 
 // With the background as a tissue, so that it can become one.
 void LocalUpdate::refine() {
-  const PatchSizes sizes(part_, surface_mm_, is_changed_);
+  sizes_.emplace(part_, surface_mm_, is_changed_, fine_);
   as_tissue(true);
   MeshEditor editor(mesh_);
   const std::size_t most = 2 * editor.tissue_tets() + kept_.mesh.tets.size() / 4;
   refine_edges(
-      editor, bounds_, [&](Vec3 p) { return sizes.at(p); }, most, stage_);
+      editor, bounds_, [&](Vec3 p) { return sizes_->at(p); }, most, stage_);
   mesh_ = editor.result();
   as_tissue(false);
 }
 
-bool LocalUpdate::relabel() {
+std::optional<MendFailure> LocalUpdate::relabel() {
   vote(mesh_, part_, is_changed_, bounds_);
   std::vector<char> counted(tissues_, 0);
   for (const TissueId t : patch_.mesh.tissues) counted[t] = 1;
@@ -337,19 +341,24 @@ KeptMesh LocalUpdate::measured() const {
   return next;
 }
 
-// Whether the mesh keeps what it must, and what it is like then. Where it does not, the surfaces are to be finer.
+// Where surfaces were singular, and of these tissues, edges are to be shorter.
+void LocalUpdate::ask_for_finer(const std::vector<Vec3>& places_mm, const std::vector<char>& tissues) {
+  for (const Vec3& p : places_mm) fine_.push_back({p, std::max(kFinerThere * sizes_->at(p), kFinest * voxel_mm())});
+  for (std::size_t t = 1; t < tissues_; ++t) {
+    if (tissues[t]) surface_mm_[t] = std::max(kFiner * surface_mm_[t], kFinest * voxel_mm());
+  }
+}
+
+// What the mesh is like with the patch made anew; nothing where it lacks something.
 std::optional<KeptMesh> LocalUpdate::attempt(std::string& failure) {
   mesh_ = patch_.mesh;
   shifts_.emplace(part_, wanted_mm3_);
-  const auto make_finer = [&](const std::vector<char>& of_tissue) {
-    for (std::size_t t = 1; t < tissues_; ++t) {
-      if (of_tissue[t]) surface_mm_[t] = std::max(kFiner * surface_mm_[t], kFinest * voxel_mm());
-    }
-  };
   refine();
-  if (!relabel()) {
-    failure = "near the change the surfaces or the number of parts of a tissue could not be kept";
-    make_finer(std::vector<char>(tissues_, 1));
+  if (const auto left = relabel()) {
+    failure = left->singular_mm.empty()
+                  ? "near the change a tissue would have had another number of parts than in the image"
+                  : "near the change a surface could not be made manifold";
+    ask_for_finer(left->singular_mm, left->miscounted);
     return std::nullopt;
   }
   deform();
@@ -357,12 +366,13 @@ std::optional<KeptMesh> LocalUpdate::attempt(std::string& failure) {
   KeptMesh next = measured();
   const std::vector<char> lacks = lacking(next);
   const auto worst = std::ranges::find(lacks, 1);
-  if (is_within_bounds() && worst == lacks.end()) return next;
-  failure = worst == lacks.end()
-                ? "a tetrahedron near the change could not be brought inside the bounds"
-                : "label " + std::to_string(change_.after.labels[static_cast<std::size_t>(worst - lacks.begin())]) +
-                      " would have had less than the fidelity asked for, or another volume";
-  make_finer(lacks);
+  if (worst == lacks.end() && is_within_bounds()) return next;
+  failure = "near the change a tetrahedron could not be brought inside the bounds";
+  if (worst != lacks.end()) {
+    const Label label = change_.after.labels[static_cast<std::size_t>(worst - lacks.begin())];
+    failure = "label " + std::to_string(label) + " would have had less than the fidelity asked for, or another volume";
+  }
+  ask_for_finer({}, lacks);
   return std::nullopt;
 }
 

@@ -96,7 +96,7 @@ class PatchMender {
     for (const auto& contact : mending.rest.contacts) contacts_[contact.vertex].push_back(contact);
   }
 
-  bool run(const Stage& stage) {
+  std::optional<MendFailure> run(const Stage& stage) {
     for (int round = 0;; ++round) {
       stage.check_cancelled();
       take_mesh(round < kMaxRounds);
@@ -109,12 +109,13 @@ class PatchMender {
       std::erase_if(marked, [&](TetId t) { return !contents_.may_refine[t]; });
       if (!singular_.empty() && marked.empty()) untangle(kFewRings, kMaxPrice);
       mesh_.tissues = complex_.mesh.tissues;
-      if (singular_.empty() && counts_agree()) return true;
+      if (singular_.empty() && counts_agree()) return std::nullopt;
       if (round >= kMaxRounds || !refine(marked, stage)) break;
     }
-    if (!singular_.empty() && !untangle(kManyRings, kTooDear)) return false;
+    if (!singular_.empty()) untangle(kManyRings, kTooDear);
     mesh_.tissues = complex_.mesh.tissues;
-    return counts_agree();
+    if (singular_.empty() && counts_agree()) return std::nullopt;
+    return failure();
   }
 
  private:
@@ -122,11 +123,13 @@ class PatchMender {
   void join_beyond();
   void find_voxels();
   std::vector<VertexId> inner_vertices() const;
+  std::vector<char> miscounted() const;
   bool counts_agree() const;
+  MendFailure failure() const;
   bool refine(std::vector<TetId>& marked, const Stage& stage);
   std::vector<TetId> tets_around(VertexId v, int rings) const;
   bool unite(const std::vector<TetId>& group, double max_price);
-  bool untangle(int max_rings, double max_price);
+  void untangle(int max_rings, double max_price);
   double price(TetId t, TissueId tissue) const;
 
   TissueMesh& mesh_;
@@ -245,9 +248,11 @@ std::vector<VertexId> PatchMender::inner_vertices() const {
   return inner;
 }
 
-// As many pieces as components, over all of the mesh, of each tissue that is or was in the patch.
-bool PatchMender::counts_agree() const {
+// By tissue: whether it has not as many pieces as components, over all of the mesh. Of the tissues that are or were in
+// the patch.
+std::vector<char> PatchMender::miscounted() const {
   const auto components = mending_.components.count_by_tissue(mending_.image.labels.size());
+  std::vector<char> result(components.size(), 0);
   std::vector<std::uint32_t> pieces(components.size(), 0);
   for (const auto& piece : pieces_.list) pieces[piece.tissue] += piece.tets > 0;
   for (const auto& [tissue, piece] : lone_) ++pieces[tissue];
@@ -255,9 +260,19 @@ bool PatchMender::counts_agree() const {
     if (!mending_.rest.counted[t] && pieces[t] == 0) continue;
     const int found = static_cast<int>(pieces[t] + mending_.rest.closed[t]), wanted = static_cast<int>(components[t]);
     const bool is_there = found > 0 || wanted == 0;
-    if (!mending_.rest.counted[t] || !is_there || std::abs(found - wanted) > mending_.pieces_off[t]) return false;
+    result[t] = !mending_.rest.counted[t] || !is_there || std::abs(found - wanted) > mending_.pieces_off[t];
   }
-  return true;
+  return result;
+}
+
+bool PatchMender::counts_agree() const {
+  return std::ranges::none_of(miscounted(), [](char is_off) { return is_off != 0; });
+}
+
+MendFailure PatchMender::failure() const {
+  MendFailure failure = {{}, miscounted()};
+  for (const VertexId v : singular_) failure.singular_mm.push_back(complex_.mesh.points_mm[v]);
+  return failure;
 }
 
 bool PatchMender::refine(std::vector<TetId>& marked, const Stage& stage) {
@@ -340,14 +355,13 @@ bool PatchMender::unite(const std::vector<TetId>& group, double max_price) {
 }
 
 // Neighbourhoods of what is singular are given to one tissue each.
-bool PatchMender::untangle(int max_rings, double max_price) {
+void PatchMender::untangle(int max_rings, double max_price) {
   for (int rings = 1; rings <= max_rings && !singular_.empty(); ++rings) {
     for (const VertexId v : singular_) {
       if (star_defect(complex_, v) > 0) unite(tets_around(v, rings), max_price);
     }
     singular_ = singular_among(complex_, inner_vertices());
   }
-  return singular_.empty();
 }
 
 double PatchMender::price(TetId t, TissueId tissue) const {
@@ -383,7 +397,7 @@ std::vector<char> vote(TissueMesh& mesh, const TissueImage& part, const std::vec
   return asked;
 }
 
-bool mend_labels(TissueMesh& mesh, const LabelMending& mending, const Stage& stage) {
+std::optional<MendFailure> mend_labels(TissueMesh& mesh, const LabelMending& mending, const Stage& stage) {
   return PatchMender(mesh, mending).run(stage);
 }
 

@@ -1,6 +1,7 @@
 // The tissues of a patch's tetrahedra after a change of the image.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "base/stage.h"
@@ -28,9 +29,14 @@ struct LabelMending {
   ShapeBounds bounds;
 };
 
+/// What could not be mended; nothing where all was.
+struct MendFailure {
+  std::vector<Vec3> singular_mm;  ///< where surfaces stay singular
+  std::vector<char> miscounted;   ///< by tissue: whether it has another number of pieces
+};
+
 /// Makes the surfaces of all tissues manifold and the pieces of each tissue as many as the image has components, by
-/// relabelling tetrahedra away from the border, and by splitting edges where that takes smaller ones. Returns whether
-/// that was possible. Throws Cancelled.
-bool mend_labels(TissueMesh& mesh, const LabelMending& mending, const Stage& stage);
+/// relabelling tetrahedra away from the border, and by splitting edges where that takes smaller ones. Throws Cancelled.
+std::optional<MendFailure> mend_labels(TissueMesh& mesh, const LabelMending& mending, const Stage& stage);
 
 }  // namespace anatomesh

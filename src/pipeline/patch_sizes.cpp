@@ -49,7 +49,7 @@ void spread(const TissueImage& image, std::vector<float>& size) {
 }  // namespace
 
 PatchSizes::PatchSizes(const TissueImage& image, std::span<const double> surface_mm,
-                       const std::vector<char>& is_changed)
+                       const std::vector<char>& is_changed, std::span<const FinePlace> fine)
     : image_(image), size_mm_(image.voxels.size(), std::numeric_limits<float>::max()) {
   const auto size_of = [&](TissueId t) { return t == 0 ? std::numeric_limits<double>::infinity() : surface_mm[t]; };
   const auto meet = [&](std::size_t v, std::size_t w) {
@@ -68,6 +68,12 @@ PatchSizes::PatchSizes(const TissueImage& image, std::span<const double> surface
         if (k > 0) meet(v - slice, v);
       }
     }
+  }
+  for (const FinePlace& place : fine) {
+    const auto [i, j, k] = image.index_at(place.at_mm);
+    if (!image.contains(i, j, k)) continue;
+    float& size = size_mm_[image.offset(i, j, k)];
+    size = std::min(size, static_cast<float>(place.size_mm));
   }
   spread(image, size_mm_);
 }
