@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <optional>
 #include <utility>
 
-#include "base/parallel.h"
 #include "base/vec.h"
 #include "boundary/surface_field.h"
 #include "deform/angle_guard.h"
@@ -33,9 +33,10 @@ namespace {
 
 constexpr int kReachBlocks = 2;  // of a change around it, blocks of voxels
 // Each with finer surfaces where the one before lacked something, and with one ring more of tetrahedra around.
-constexpr int kAttempts = 3;
-// Of the mesh: a patch of more is not tried again, and one of the most not at all.
-constexpr double kLarge = 0.4, kMost = 0.8;
+constexpr int kAttempts = 5, kMostRings = 3;
+// Of the mesh: where so many tetrahedra were made in vain, there is no further attempt; a patch of the most is not
+// tried at all.
+constexpr double kWorthwhile = 0.4, kMost = 0.8;
 constexpr double kFiner = 0.65, kFinest = 0.4;  // of the size before; of the mean voxel spacing
 constexpr double kFinerThere = 0.45;            // the first of them at single places
 constexpr int kMargin = 6;                      // voxels around the patch that the field looks at
@@ -388,20 +389,22 @@ std::string LocalUpdate::hindrance() const {
 
 LocalResult LocalUpdate::run() {
   LocalResult result;
+  std::size_t spent = 0;  // tetrahedra made in vain
   result.failure = hindrance();
   if (!result.failure.empty()) return result;
   choose_sizes();
   compact();
   for (int n = 0; n < kAttempts; ++n) {
     progress_.at(static_cast<double>(n) / kAttempts);
-    take(1 + n);
+    take(std::min(1 + n, kMostRings));
     if (share_of_mesh() > kMost) {
       result.failure = "the change reaches most of the mesh";
       break;
     }
     std::optional<KeptMesh> next = attempt(result.failure);
     if (!next) {
-      if (share_of_mesh() > kLarge) break;
+      spent += mesh_.tets.size();
+      if (static_cast<double>(spent) > kWorthwhile * static_cast<double>(kept_.mesh.tets.size())) break;
       continue;
     }
     result.failure.clear();
@@ -435,21 +438,10 @@ void LocalUpdate::take(int rings) {
 
 }  // namespace
 
-void measure_kept(KeptMesh& kept, const TissueImage& image) {
-  const std::size_t tissues = image.labels.size();
-  kept.area_mm2 = boundary_areas_mm2(image);
-  kept.unused_vertices = 0;
-  for (std::size_t a = 0; a < 3; ++a) {
-    kept.box.low[a] = image.first[a];
-    kept.box.high[a] = image.first[a] + image.size[a];
-  }
-  const std::vector<std::uint32_t> components = ImageComponents(image).count_by_tissue(tissues);
-  const RestPieces pieces = find_rest_pieces(kept.mesh, {}, std::vector<char>(tissues, 1));
-  kept.pieces_off.assign(tissues, 0);
-  for (std::size_t t = 1; t < tissues; ++t)
-    kept.pieces_off[t] = std::abs(static_cast<int>(pieces.closed[t]) - static_cast<int>(components[t]));
-  kept.volume_mm3 = volumes_of(kept.mesh, tissues);
-  const TissueMesh& mesh = kept.mesh;
+namespace {
+
+// Mean length of the edges between two vertices on interfaces, by tissue; 0 where there are none.
+std::vector<double> surface_edges_mm(const TissueMesh& mesh, std::size_t tissues) {
   constexpr TissueId kNone = 0xffff;
   std::vector<TissueId> first(mesh.points_mm.size(), kNone);
   std::vector<char> on_interface(mesh.points_mm.size(), 0);
@@ -470,8 +462,27 @@ void measure_kept(KeptMesh& kept, const TissueImage& image) {
       }
     }
   }
-  kept.surface_mm.assign(tissues, 0);
-  for (std::size_t t = 1; t < tissues; ++t) kept.surface_mm[t] = count[t] > 0 ? sum[t] / count[t] : 0;
+  for (std::size_t t = 0; t < tissues; ++t) sum[t] = t > 0 && count[t] > 0 ? sum[t] / count[t] : 0;
+  return sum;
+}
+
+}  // namespace
+
+void measure_kept(KeptMesh& kept, const TissueImage& image) {
+  const std::size_t tissues = image.labels.size();
+  kept.area_mm2 = boundary_areas_mm2(image);
+  kept.unused_vertices = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    kept.box.low[a] = image.first[a];
+    kept.box.high[a] = image.first[a] + image.size[a];
+  }
+  const std::vector<std::uint32_t> components = ImageComponents(image).count_by_tissue(tissues);
+  const RestPieces pieces = find_rest_pieces(kept.mesh, {}, std::vector<char>(tissues, 1));
+  kept.pieces_off.assign(tissues, 0);
+  for (std::size_t t = 1; t < tissues; ++t)
+    kept.pieces_off[t] = std::abs(static_cast<int>(pieces.closed[t]) - static_cast<int>(components[t]));
+  kept.volume_mm3 = volumes_of(kept.mesh, tissues);
+  kept.surface_mm = surface_edges_mm(kept.mesh, tissues);
 }
 
 LocalResult update_locally(KeptMesh& kept, const ImageChange& change, const Options& options,

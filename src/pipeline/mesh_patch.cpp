@@ -8,8 +8,7 @@
 
 #include "base/parallel.h"
 #include "base/vec.h"
-#include "mesh/adjacency.h"
-#include "mesh/tet_shape.h"
+#include "lattice/tet_complex.h"
 
 namespace anatomesh {
 namespace {

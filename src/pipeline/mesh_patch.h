@@ -5,9 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/disjoint_sets.h"
 #include "image/tissue_image.h"
-#include "lattice/tet_complex.h"
 #include "mesh/tissue_mesh.h"
 
 namespace anatomesh {

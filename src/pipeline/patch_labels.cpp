@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <set>
 #include <span>
 #include <utility>
@@ -308,11 +309,11 @@ std::vector<TetId> PatchMender::tets_around(VertexId v, int rings) const {
   return tets;
 }
 
-// Gives all tetrahedra of a group to one tissue where no defect is left around them then, as many pieces as before are
-// right, and it costs least.
+// Gives all tetrahedra of a group to the tissue that leaves fewest defects, fewer than there are, and of equal ones to
+// the cheapest. Where the numbers of pieces are right they stay so. Whether there was one.
 bool PatchMender::unite(const std::vector<TetId>& group, double max_price) {
   std::vector<VertexId> vertices;
-  std::vector<TissueId> own, tissues;
+  std::vector<TissueId> own;
   for (const TetId t : group) {
     if (contents_.fixed[t]) return false;
     own.push_back(complex_.tissue(t));
@@ -320,47 +321,46 @@ bool PatchMender::unite(const std::vector<TetId>& group, double max_price) {
   }
   std::sort(vertices.begin(), vertices.end());
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  tissues = own;
+  std::vector<TissueId> tissues = own;
   std::sort(tissues.begin(), tissues.end());
   tissues.erase(std::unique(tissues.begin(), tissues.end()), tissues.end());
+  const auto defects = [&] {
+    unsigned sum = 0;
+    for (const VertexId v : vertices) sum += star_defect(complex_, v);
+    return sum;
+  };
   const bool agreed = counts_agree();
-  double least = max_price;
-  TissueId best = 0;
-  bool found = false;
-  const auto give = [&](TissueId tissue) {
-    for (const TetId t : group) complex_.mesh.tissues[t] = tissue;
-  };
-  const auto give_back = [&] {
-    for (std::size_t n = 0; n < group.size(); ++n) complex_.mesh.tissues[group[n]] = own[n];
-  };
+  std::pair<unsigned, double> least = {defects(), 0};
+  std::optional<TissueId> best;
   for (const TissueId tissue : tissues) {
     double cost = 0;
     for (const TetId t : group) cost += complex_.tissue(t) == tissue ? 0 : price(t, tissue);
-    if (cost > least || (found && cost == least)) continue;
-    give(tissue);
-    bool sound = std::ranges::all_of(vertices, [&](VertexId v) { return star_defect(complex_, v) == 0; });
-    if (sound && agreed) {
+    if (cost > max_price) continue;
+    for (const TetId t : group) complex_.mesh.tissues[t] = tissue;
+    const std::pair<unsigned, double> left = {defects(), cost};
+    if (left < least) {
       pieces_ = find_pieces(complex_);
-      sound = counts_agree();
+      if (!agreed || counts_agree()) {
+        least = left;
+        best = tissue;
+      }
     }
-    give_back();
-    if (!sound) continue;
-    least = cost;
-    best = tissue;
-    found = true;
+    for (std::size_t n = 0; n < group.size(); ++n) complex_.mesh.tissues[group[n]] = own[n];
   }
-  if (found) give(best);
+  for (std::size_t n = 0; best && n < group.size(); ++n) complex_.mesh.tissues[group[n]] = *best;
   pieces_ = find_pieces(complex_);
-  return found;
+  return best.has_value();
 }
 
-// Neighbourhoods of what is singular are given to one tissue each.
+// Neighbourhoods of what is singular are given to one tissue each, as long as that leaves fewer defects.
 void PatchMender::untangle(int max_rings, double max_price) {
-  for (int rings = 1; rings <= max_rings && !singular_.empty(); ++rings) {
+  for (int rings = 1; rings <= max_rings && !singular_.empty();) {
+    bool united = false;
     for (const VertexId v : singular_) {
-      if (star_defect(complex_, v) > 0) unite(tets_around(v, rings), max_price);
+      if (star_defect(complex_, v) > 0) united = unite(tets_around(v, rings), max_price) || united;
     }
     singular_ = singular_among(complex_, inner_vertices());
+    if (!united) ++rings;
   }
 }
 

@@ -62,7 +62,7 @@ TissueMesh joined(const TissueMesh& mesh, const TissueMesh& beyond) {
   return all;
 }
 
-// Gives both images, and what goes with the first, the same numbers of tissues: those of all labels of either.
+// The numbers that labels have among all.
 std::vector<TissueId> numbers_in(const std::vector<Label>& all, const std::vector<Label>& labels) {
   std::vector<TissueId> numbers;
   for (const Label label : labels)
@@ -91,7 +91,7 @@ void renumber(std::vector<T>& of_tissue, const std::vector<Label>& from, const s
   of_tissue = std::move(result);
 }
 
-// of tissues that the mesh has in both.
+// Also the numbers of the mesh; each of its labels is among the others, too.
 void renumber(KeptMesh& kept, const std::vector<Label>& from, const std::vector<Label>& to) {
   if (from == to) return;
   const std::vector<TissueId> number = numbers_in(to, from);
