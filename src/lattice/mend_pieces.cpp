@@ -276,7 +276,8 @@ void PieceMender::dissolve_empty_pieces() {
 
 // Gives a piece to the neighbour behind most of its faces.
 void PieceMender::dissolve(const std::vector<TetId>& tets) {
-  if (std::any_of(tets.begin(), tets.end(), [&](TetId t) { return contents_.fixed[t] != 0; })) return;
+  const auto is_held = [&](TetId t) { return !contents_.held.empty() && contents_.held[t]; };
+  if (std::any_of(tets.begin(), tets.end(), is_held)) return;
   std::map<TissueId, std::uint32_t> faces;
   for (const TetId t : tets) {
     for (const TetId other : complex_.behind[t]) {

@@ -25,6 +25,7 @@ struct TetContents {
   std::vector<char> fixed;       ///< inside a large pure tetrahedron: keeps its tissue
   std::vector<char> may_refine;  ///< whether the lattice can be refined there
   std::vector<char> decided;     ///< its tissue was given by an earlier repair
+  std::vector<char> held;        ///< at the border of a part of a mesh: keeps its tissue; empty: none is
 };
 
 /// The component that a tetrahedron stands for, and by how many voxels of it.

@@ -166,12 +166,13 @@ void PatchMender::take_mesh(bool may_refine) {
   contents_.fixed.resize(count);
   contents_.may_refine.resize(count);
   contents_.decided.assign(count, 0);
+  contents_.held.resize(count);
   is_bad_.resize(count);
   parallel_for(count, [&](std::size_t t) {
     const auto id = static_cast<TetId>(t);
     contents_.sizes[t] = static_cast<float>(volume_of(mesh_, id) / (s.x * s.y * s.z));
     const bool touches_border = std::ranges::any_of(mesh_.tets[t], [&](VertexId v) { return is_border_[v] != 0; });
-    contents_.fixed[t] = touches_border;
+    contents_.fixed[t] = contents_.held[t] = touches_border;
     is_bad_[t] = !is_within(mesh_, id, mending_.bounds);
     contents_.may_refine[t] = may_refine && !contents_.fixed[t] && contents_.sizes[t] > kSmallest;
   });
