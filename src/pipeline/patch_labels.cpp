@@ -261,7 +261,7 @@ std::vector<char> PatchMender::miscounted() const {
   for (std::size_t t = 1; t < components.size(); ++t) {
     if (!mending_.rest.counted[t] && pieces[t] == 0) continue;
     const int found = static_cast<int>(pieces[t] + mending_.rest.closed[t]), wanted = static_cast<int>(components[t]);
-    const bool is_there = found > 0 || wanted == 0;
+    const bool is_there = (found > 0) == (wanted > 0);
     result[t] = !mending_.rest.counted[t] || !is_there || std::abs(found - wanted) > mending_.pieces_off[t];
   }
   return result;
