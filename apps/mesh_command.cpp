@@ -5,6 +5,7 @@
 #include <chrono>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -45,17 +46,14 @@ auto timed(std::vector<StageTime>& times, const char* stage, const Work& work) {
   return result;
 }
 
-/// With a report: everything, against the image. Else only what the table at the end shows.
-Assessment measure(const MeshArguments& arguments, const LabelImage& image, const Result& result,
-                   const Progress& progress) {
+/// Everything, against the image.
+Assessment measure(const LabelImage& image, const Result& result, const Progress& progress) {
   AssessOptions options;
   options.frame = result.options.frame;
   options.min_dihedral_deg = result.options.deform.min_dihedral_deg;
   options.max_dihedral_deg = result.options.deform.max_dihedral_deg;
   options.min_mean_ratio = result.options.deform.min_mean_ratio;
-  if (!arguments.report.empty()) return assess(result.mesh, &image, options, progress);
-  options.distances = false;
-  return assess(result.mesh, nullptr, options, progress);
+  return assess(result.mesh, &image, options, progress);
 }
 
 /// image_to_mesh(), with the file named in what it has to say about the image.
@@ -92,17 +90,19 @@ int run_mesh(const MeshArguments& arguments, const Interrupt& interrupt) {
   const double meshing_ends = arguments.report.empty() ? 0.9 : 0.6;
   const Result result = mesh_of(arguments.image, file.image, options, bar.part(0.05, meshing_ends, interrupt.token()));
   times.insert(times.end(), result.times.begin(), result.times.end());
-  const Assessment assessment = timed(times, "measure", [&] {
-    return measure(arguments, file.image, result, bar.part(meshing_ends, 0.95, interrupt.token()));
+  std::optional<Assessment> assessment;
+  const ShapeSummary shapes = timed(times, "measure", [&] {
+    if (!arguments.report.empty())
+      assessment = measure(file.image, result, bar.part(meshing_ends, 0.95, interrupt.token()));
+    return summarise_shapes(result.mesh);
   });
   interrupt.throw_if_requested();
 
   bar.show("write", 0.95);
   timed(times, "write", [&] { return write_mesh(arguments.mesh, result.mesh), 0; });
   bar.finish();
-  const MeshSummary summary = {arguments.image,           arguments.mesh, size_on_disk(arguments.mesh), &result,
-                               &assessment.whole.quality, times};
-  if (!arguments.report.empty()) write_text_file(arguments.report, mesh_report_json({summary, file, assessment}));
+  const MeshSummary summary = {arguments.image, arguments.mesh, size_on_disk(arguments.mesh), &result, shapes, times};
+  if (assessment) write_text_file(arguments.report, mesh_report_json({summary, file, *assessment}));
   for (const auto& sentences : {file.notes, result.warnings})
     for (const std::string& sentence : sentences) print_warning(sentence);
   if (!arguments.quiet) fmt::print("{}", mesh_table(summary));

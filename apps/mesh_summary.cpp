@@ -43,7 +43,7 @@ std::string fidelity_line(const Result& result) {
 
 std::string mesh_table(const MeshSummary& summary) {
   const Result& result = *summary.result;
-  const Quality& quality = *summary.quality;
+  const ShapeSummary& shapes = summary.shapes;
   const auto meshed =
       std::count_if(result.tissues.begin(), result.tissues.end(), [](const auto& t) { return t.tets > 0; });
   double total_s = 0;
@@ -58,10 +58,10 @@ std::string mesh_table(const MeshSummary& summary) {
                                     result.options.frame == Frame::lps ? "LPS" : "RAS"));
   text += field("tetrahedra", grouped(result.mesh.tets.size()));
   text += field("vertices", grouped(result.mesh.points_mm.size()));
-  text += field("dihedral angles", fmt::format("{} to {} degrees", fixed(quality.min_dihedral_deg, 2),
-                                               fixed(quality.max_dihedral_deg, 2)));
-  text += field("mean ratio", fmt::format("{} smallest, {} mean", fixed(quality.min_mean_ratio, 3),
-                                          fixed(quality.mean_mean_ratio, 3)));
+  text += field("dihedral angles",
+                fmt::format("{} to {} degrees", fixed(shapes.min_dihedral_deg, 2), fixed(shapes.max_dihedral_deg, 2)));
+  text += field("mean ratio",
+                fmt::format("{} smallest, {} mean", fixed(shapes.min_mean_ratio, 3), fixed(shapes.mean_mean_ratio, 3)));
   text += field("labels", fmt::format("{} of {} meshed", meshed, result.tissues.size()));
   text += field("lattice",
                 fmt::format("{:.4g} mm, refined to at least {:.4g} mm", lattice.bcc_size_mm, lattice.min_size_mm));

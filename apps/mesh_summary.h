@@ -17,7 +17,7 @@ struct MeshSummary {
   std::filesystem::path mesh_file;
   std::uint64_t mesh_bytes = 0;
   const Result* result = nullptr;
-  const Quality* quality = nullptr;
+  ShapeSummary shapes;
   std::vector<StageTime> times;  ///< of reading, meshing, measuring and writing
 };
 

@@ -198,6 +198,18 @@ struct AssessOptions {
 Assessment assess(const TetMesh& mesh, const LabelImage* image = nullptr, const AssessOptions& options = {},
                   const Progress& progress = {});
 
+/// What Quality says of the shapes of a mesh's tetrahedra in four numbers.
+struct ShapeSummary {
+  double min_dihedral_deg = kNotMeasured;
+  double max_dihedral_deg = kNotMeasured;
+  double min_mean_ratio = kNotMeasured;
+  double mean_mean_ratio = kNotMeasured;
+};
+
+/// Measures the shapes of a mesh, all of whose vertices exist, and nothing else. The result does not depend on the
+/// number of threads. Cost: about 0.3 us a tetrahedron.
+ShapeSummary summarise_shapes(const TetMesh& mesh);
+
 /// One sentence for each guarantee that the mesh breaks; empty: all hold. Validity: positive volumes, no face in more
 /// than two tetrahedra, no hanging, duplicate or unused vertex, no overlap; the bounds of the options; every label of
 /// the image and no other in the mesh; the mesh in its place in the image (Dice of the union at least 0.5).

@@ -73,7 +73,8 @@ void register_mesh(TissueMesh& mesh, const MeshTopology& topology, const AngleGu
   const Vec3 spacing = field.image().spacing_mm;
   const double near_mm = kNear * (spacing.x + spacing.y + spacing.z) / 3;
   for (int iteration = 0; iteration < iterations; ++iteration) {
-    assemble_stiffness(stiffness, std::span(mesh.points_mm).first(part.vertices), {part.tets, part.tissues, topology.tets_of_vertex}, materials);
+    assemble_stiffness(stiffness, std::span(mesh.points_mm).first(part.vertices),
+                       {part.tets, part.tissues, topology.tets_of_vertex}, materials);
     for (std::size_t s = 0; s < vertices.size(); ++s) sources[s].position_mm = mesh.points_mm[vertices[s]];
     std::fill(weight.begin(), weight.end(), 0.0);
     const double scale = kMatchWeight * mean_diagonal(stiffness);

@@ -102,7 +102,8 @@ class PatchMender {
       stage.check_cancelled();
       take_mesh(round < kMaxRounds);
       std::vector<TetId> changed;
-      PieceRepair repair = mend_pieces(complex_, pieces_, mending_.image, mending_.components, contents_);
+      std::vector<Claim> claims(mesh_.tets.size());
+      PieceRepair repair = mend_pieces(complex_, pieces_, mending_.image, mending_.components, contents_, claims);
       singular_ = mend_single_tets(
           complex_, pieces_, singular_among(complex_, inner_vertices()),
           [this](TetId t, TissueId tissue) { return price(t, tissue); }, kMaxPrice, changed);

@@ -36,6 +36,20 @@ TEST(Quality, RegularTetrahedron) {
   EXPECT_EQ(q.dihedral_histogram[14], 6u);  // 70.5 degrees
 }
 
+TEST(ShapeSummary, SaysWhatQualityDoes) {
+  TetMesh mesh = single_tet({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}});
+  mesh.points_mm.push_back({1, 1, 1.5});
+  mesh.tets.push_back({1, 2, 3, 4});
+  mesh.labels.push_back(2);
+  const ShapeSummary shapes = summarise_shapes(mesh);
+  const Quality q = quality_of(mesh);
+  EXPECT_EQ(shapes.min_dihedral_deg, q.min_dihedral_deg);
+  EXPECT_EQ(shapes.max_dihedral_deg, q.max_dihedral_deg);
+  EXPECT_EQ(shapes.min_mean_ratio, q.min_mean_ratio);
+  EXPECT_NEAR(shapes.mean_mean_ratio, q.mean_mean_ratio, 1e-15);
+  EXPECT_TRUE(std::isnan(summarise_shapes({}).min_dihedral_deg));
+}
+
 TEST(Quality, RightCornerTetrahedron) {
   const Quality q = quality_of(single_tet({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}));
   EXPECT_NEAR(q.min_dihedral_deg, deg(std::acos(1 / std::sqrt(3))), 1e-12);
