@@ -124,6 +124,7 @@ class PatchMender {
   void take_mesh(bool may_refine);
   void join_beyond();
   void find_voxels();
+  TetId holder_of(std::uint32_t voxel) const;
   std::vector<VertexId> inner_vertices() const;
   std::vector<char> miscounted() const;
   bool counts_agree() const;
@@ -144,6 +145,7 @@ class PatchMender {
   std::vector<char> is_border_;
   TetContents contents_;
   std::vector<std::uint32_t> voxel_begin_, voxels_;  // by tetrahedron
+  std::vector<TetId> owner_;                         // by voxel of the part
   std::vector<char> is_bad_;                         // outside the bounds: background that cannot become a tissue
   std::vector<VertexId> singular_;
 };
@@ -180,6 +182,18 @@ void PatchMender::take_mesh(bool may_refine) {
   contents_.voxels = [this](TetId t) {
     return std::span(voxels_).subspan(voxel_begin_[t], voxel_begin_[t + 1] - voxel_begin_[t]);
   };
+  contents_.holder = [this](std::uint32_t voxel) { return holder_of(voxel); };
+}
+
+TetId PatchMender::holder_of(std::uint32_t voxel) const {
+  const TissueImage &part = mending_.part, &image = mending_.image;
+  const auto nx = static_cast<std::uint32_t>(image.size[0]), ny = static_cast<std::uint32_t>(image.size[1]);
+  const std::array<std::uint32_t, 3> index = {voxel % nx, voxel / nx % ny, voxel / nx / ny};
+  std::array<int, 3> at;
+  for (std::size_t a = 0; a < 3; ++a)
+    at[a] = static_cast<int>(static_cast<std::int64_t>(index[a]) + image.first[a] - part.first[a]);
+  const TetId t = part.contains(at[0], at[1], at[2]) ? owner_[part.offset(at[0], at[1], at[2])] : kNoTet;
+  return t == kNoTet ? TetComplex::kNone : t;
 }
 
 // Tetrahedra that touch the same piece of the rest.
@@ -215,13 +229,13 @@ void PatchMender::find_voxels() {
     for (std::size_t a = 0; a < 3; ++a)
       points[v][a] = mesh_.points_mm[v][a] / part.spacing_mm[a] - static_cast<double>(part.first[a]);
   }
-  std::vector<TetId> owner(part.voxels.size(), kNoTet);
+  owner_.assign(part.voxels.size(), kNoTet);
   for_each_owned_slices(points, mesh_.tets, size, {}, [&](const OwnedSlices& slices) {
     std::copy(slices.owner.begin(), slices.owner.end(),
-              owner.begin() + static_cast<std::ptrdiff_t>(slices.first * size[0] * size[1]));
+              owner_.begin() + static_cast<std::ptrdiff_t>(slices.first * size[0] * size[1]));
   });
   voxel_begin_.assign(mesh_.tets.size() + 1, 0);
-  for (const TetId t : owner) {
+  for (const TetId t : owner_) {
     if (t != kNoTet) ++voxel_begin_[t + 1];
   }
   std::partial_sum(voxel_begin_.begin(), voxel_begin_.end(), voxel_begin_.begin());
@@ -233,11 +247,11 @@ void PatchMender::find_voxels() {
   for (int k = 0; k < part.size[2]; ++k) {
     for (int j = 0; j < part.size[1]; ++j) {
       for (int i = 0; i < part.size[0]; ++i, ++v) {
-        if (owner[v] == kNoTet) continue;
+        if (owner_[v] == kNoTet) continue;
         const std::array<int, 3> at = {i + shift[0], j + shift[1], k + shift[2]};
         // Beyond the crop there is background only: any voxel of it stands for that.
         const std::size_t offset = image.contains(at[0], at[1], at[2]) ? image.offset(at[0], at[1], at[2]) : 0;
-        voxels_[next[owner[v]]++] = static_cast<std::uint32_t>(offset);
+        voxels_[next[owner_[v]]++] = static_cast<std::uint32_t>(offset);
       }
     }
   }
