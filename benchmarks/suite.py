@@ -74,8 +74,9 @@ def main():
         if re.search(arguments.filter, name):
             kept[name] = measure(arguments.program, name, arguments.runs)
             print(row(name, kept[name]), flush=True)
+            in_order = {name: kept[name] for name in names if name in kept}
+            KEPT.write_text(json.dumps(in_order, indent=1) + "\n", encoding="utf-8")
     kept = {name: kept[name] for name in names if name in kept}
-    KEPT.write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
     replace_between(arguments.page, "<!-- stages:begin -->", "<!-- stages:end -->", table(kept))
     speed_plots.draw_stages(arguments.page.parent, {name: CASE.match(name).groupdict() | kept[name] for name in kept})
 

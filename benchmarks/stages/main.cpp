@@ -137,8 +137,7 @@ BENCHMARK(image_to_mesh_)
     ->Args({256, 4, 1000, kThreads})
     ->Args({256, 4, 500, kThreads})
     ->Args({256, 4, 300, kThreads})
-    ->Args({256, 4, 200, kThreads})
-    ->Args({256, 4, 130, kThreads});
+    ->Args({256, 4, 200, kThreads});
 BENCHMARK(fixed_cost)
     ->Name("fixed_cost")
     ->UseRealTime()
