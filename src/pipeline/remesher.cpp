@@ -91,7 +91,7 @@ void renumber(std::vector<T>& of_tissue, const std::vector<Label>& from, const s
   of_tissue = std::move(result);
 }
 
-// Also the numbers of the mesh; each of its labels is among the others, too.
+// Also the numbers of the mesh; the labels of its tetrahedra are among the others, too.
 void renumber(KeptMesh& kept, const std::vector<Label>& from, const std::vector<Label>& to) {
   if (from == to) return;
   const std::vector<TissueId> number = numbers_in(to, from);
@@ -232,19 +232,10 @@ void Remesher::Impl::take(TissueImage image, const std::vector<Label>& numbered,
     if (image.counts[t] > 0) labels.push_back(numbered[t]);
   }
   if (labels != numbered) {
-    // Tissues that are gone have neither voxels nor tetrahedra.
-    std::vector<TissueId> number(numbered.size(), 0);
-    for (std::size_t t = 0; t < labels.size(); ++t)
-      number[static_cast<std::size_t>(std::ranges::lower_bound(numbered, labels[t]) - numbered.begin())] =
-          static_cast<TissueId>(t);
-    for (TissueId& t : kept_.mesh.tissues) t = number[t];
+    // Tissues that are gone have neither voxels nor tetrahedra: what their numbers become does not matter.
+    renumber(kept_, numbered, labels);
+    const std::vector<TissueId> number = numbers_in(labels, numbered);
     for (TissueId& t : image.voxels) t = number[t];
-    renumber(kept_.fidelity, numbered, labels);
-    renumber(kept_.inside, numbered, labels);
-    renumber(kept_.volume_mm3, numbered, labels);
-    renumber(kept_.surface_mm, numbered, labels);
-    renumber(kept_.area_mm2, numbered, labels);
-    renumber(kept_.pieces_off, numbered, labels);
     renumber(image.counts, numbered, labels);
     image.labels = labels;
   }
