@@ -56,14 +56,19 @@ std::uint64_t new_state() {
   return ++states;
 }
 
+// What an index may be at the most; no image is so large.
+constexpr double kFarthest = 1 << 30;
+
 // As std::floor and std::lround do, in range and without a call.
 int floor_of(double x) {
-  const int whole = static_cast<int>(x);
-  return whole - (x < whole);
+  const double near = std::clamp(x, -kFarthest, kFarthest);
+  const int whole = static_cast<int>(near);
+  return whole - (near < whole);
 }
 int nearest_to(double x) {
-  const int whole = static_cast<int>(x);
-  const double rest = x - whole;
+  const double near = std::clamp(x, -kFarthest, kFarthest);
+  const int whole = static_cast<int>(near);
+  const double rest = near - whole;
   return whole + (rest >= 0.5) - (rest <= -0.5);
 }
 
