@@ -205,7 +205,8 @@ void add_mesh_options(CLI::App& command, MeshRequest& request) {
   add_labels_option(command, request.ranges);
   add_frame_option(command, request.options.frame);
   add_number(command, "--threads", "N", "threads; 0 takes all cores [0]", request.options.threads);
-  add_number(command, "--max-memory", "GIB", "refuse to start above this; 0 takes the memory that is free [0]",
+  add_number(command, "--max-memory", "GIB",
+             "refuse a mesh that takes more by estimate; 0 takes the memory that is free [0]",
              request.options.max_memory_gib);
 }
 

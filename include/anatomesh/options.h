@@ -67,7 +67,7 @@ struct Options {
   std::vector<Label> labels;  ///< mesh these only, the rest is background; empty: all
   Frame frame = Frame::lps;   ///< space of the resulting mesh
   int threads = 0;            ///< >= 0; 0: all cores. The result does not depend on it
-  double max_memory_gib = 0;  ///< refuse to start above this; >= 0; 0: the memory this machine has free
+  double max_memory_gib = 0;  ///< refuse a mesh that takes more by estimate; >= 0; 0: the memory this machine has free
 };
 
 }  // namespace anatomesh

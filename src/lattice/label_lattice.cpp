@@ -94,6 +94,7 @@ class LabelLattice::Impl {
   TissueMesh background() const;
 
  private:
+  bool has_room_for(const std::vector<TetRef>& marked) const;
   std::vector<TetRef> leaves_wanted(const std::vector<Demand>& asked) const;
   /// Returns whether anything was refined.
   bool refine_until_faithful(const Stage& stage);
@@ -250,6 +251,11 @@ std::vector<TetRef> LabelLattice::Impl::leaves_wanted(const std::vector<Demand>&
   return marked;
 }
 
+// Eight take the place of each of them.
+bool LabelLattice::Impl::has_room_for(const std::vector<TetRef>& marked) const {
+  return leaves_.list().size() + 7 * marked.size() <= plan_.most_tets;
+}
+
 bool LabelLattice::Impl::refine_until_faithful(const Stage& stage) {
   asked_.clear();
   for (int round = 0;; ++round) {
@@ -259,6 +265,11 @@ bool LabelLattice::Impl::refine_until_faithful(const Stage& stage) {
     const std::vector<TetRef> marked = leaves_wanted(asked);
     asked_ = std::move(asked);
     if (marked.empty()) return round > 0;
+    if (!has_room_for(marked)) {
+      throw InvalidInput("the lattice needs more than the " + std::to_string(plan_.most_tets) +
+                         " tetrahedra that fit into the memory; take a larger bcc_size, min_size or "
+                         "max_memory_gib");
+    }
     stage.check_cancelled();
     votes_.descend(lattice_.refine(marked));
     stage.at(std::min(0.9, 0.15 + 0.1 * ++rounds_done_));
@@ -358,7 +369,7 @@ std::optional<LabelledLattice> LabelLattice::Impl::refine(const FidelityGap& gap
       const std::vector<TetRef> more = leaves_that_miss(missed, gap.missed_size_mm);
       marked.insert(marked.end(), more.begin(), more.end());
     }
-    if (marked.empty()) break;
+    if (marked.empty() || !has_room_for(marked)) break;
     stage.check_cancelled();
     votes_.descend(lattice_.refine(marked));
     leaves_.collect(NewLabels::vote);

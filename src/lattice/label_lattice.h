@@ -3,7 +3,9 @@
 // Simulations", section on lattice refinement.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -24,7 +26,8 @@ struct LatticePlan {
   /// Level that is had everywhere along a tissue's boundary, whatever its fidelity; by tissue, empty: 0.
   std::vector<int> surface_level;
   const SizeField* sizes =
-      nullptr;                      ///< tetrahedra with longer edges are refined; null: none are. Must outlive the plan
+      nullptr;  ///< tetrahedra with longer edges are refined; null: none are. Must outlive the plan
+  std::size_t most_tets = std::numeric_limits<std::size_t>::max();  ///< of the lattice with its background
   bool allow_non_manifold = false;  ///< leaves the tissues' surfaces as the labels make them
   bool keeps_background = false;    ///< background() will be asked for
 };
@@ -67,12 +70,12 @@ class LabelLattice {
   LabelLattice& operator=(const LabelLattice&) = delete;
 
   /// Refines until each tissue has the plan's fidelity on the lattice, or the smallest size is reached. Throws
-  /// Cancelled.
+  /// InvalidInput (more tetrahedra than the plan has room for), Cancelled.
   LabelledLattice build(const Stage& stage);
 
   /// Refines the tetrahedra that hold the most wrong voxels, as many as it takes to hold those that have to be mended,
   /// and those around missed voxels until they have their label, and labels the lattice again. Nothing when all of them
-  /// are of the smallest size. Throws Cancelled.
+  /// are of the smallest size, or when there would be more tetrahedra than the plan has room for. Throws Cancelled.
   std::optional<LabelledLattice> refine(const FidelityGap& gap, const Stage& stage);
 
   /// The background beyond the cushion of the lattice as it is now: together with the cushion it fills the lattice's

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <sstream>
 #include <string>
 
@@ -12,7 +11,6 @@
 #include "base/parallel.h"
 #include "base/rotation.h"
 #include "base/vec.h"
-#include "image/boundary_area.h"
 
 namespace anatomesh {
 namespace {
@@ -139,31 +137,22 @@ void check_labels_exist(const Options& options, const TissueImage& tissues) {
   for (const auto& [label, material] : options.deform.material) require_label(tissues, label, "material");
 }
 
-void check_memory(const Options& options, const LabelImage& image, const TissueImage& tissues) {
-  // Measured: the finest tetrahedra lie in a layer along the boundaries, about this many for each square of the
-  // smallest lattice spacing, and each takes this much while the mesh deforms.
-  // The coarsest lattice covers the whole crop.
-  constexpr double kTetsPerSquare = 12, kBytesPerTet = 700, kBytesPerVoxel = 9, kBytesPerCell = 1200;
+std::size_t tets_that_fit(const Options& options, const LabelImage& image, const TissueImage& tissues) {
+  // Measured: what a tetrahedron of the lattice takes while the mesh deforms, and what the images beside it take.
+  constexpr double kBytesPerTet = 650, kBytesPerVoxel = 9, kBytesPerCell = 1200;
   constexpr double kGib = 1024.0 * 1024 * 1024;
-  const LatticeOptions& lattice = options.lattice;
-  const double voxel_mm = mean_of(image.spacing_mm);
-  double h = lattice.min_size_mm;
-  // A fidelity of the final mesh takes its smallest size, and most often any below two voxels, in a few places only.
-  if (lattice.fidelity_stage == FidelityStage::final) h *= 2;
-  if (lattice.fidelity_stage == FidelityStage::final && h >= voxel_mm) h = std::max(h, 2 * voxel_mm);
-  const std::vector<double> areas = boundary_areas_mm2(tissues);
-  const double interfaces_mm2 = 0.5 * std::accumulate(areas.begin(), areas.end(), 0.0);
-  const double tets = kTetsPerSquare * interfaces_mm2 / (h * h);
-  double cells = 1;
-  for (std::size_t a = 0; a < 3; ++a) cells *= tissues.size[a] * tissues.spacing_mm[a] / lattice.bcc_size_mm + 3;
-  const double needed_gib =
-      (tets * kBytesPerTet + cells * kBytesPerCell + static_cast<double>(tissues.voxels.size()) * kBytesPerVoxel) /
-      kGib;
   const double limit_gib = options.max_memory_gib > 0 ? options.max_memory_gib : available_memory_gib();
-  if (limit_gib == 0 || needed_gib <= limit_gib) return;
+  if (limit_gib == 0) return std::numeric_limits<std::size_t>::max();
+  // The coarsest lattice covers the whole crop.
+  double cells = 1;
+  for (std::size_t a = 0; a < 3; ++a)
+    cells *= tissues.size[a] * tissues.spacing_mm[a] / options.lattice.bcc_size_mm + 3;
+  const double images_gib = static_cast<double>(tissues.voxels.size()) * kBytesPerVoxel / kGib;
+  const double needed_gib = images_gib + cells * kBytesPerCell / kGib;
+  if (needed_gib <= limit_gib) return static_cast<std::size_t>((limit_gib - images_gib) * kGib / kBytesPerTet);
   throw InvalidInput("meshing this image of " + std::to_string(image.voxels.size()) + " voxels would take about " +
                      text(std::ceil(needed_gib * 10) / 10) + " GiB of memory where " +
-                     text(std::floor(limit_gib * 10) / 10) + " GiB may be used; take a larger bcc_size or min_size");
+                     text(std::floor(limit_gib * 10) / 10) + " GiB may be used; take a larger bcc_size");
 }
 
 }  // namespace anatomesh

@@ -86,12 +86,13 @@ Meshing mesh_image(const LabelImage& image, const Options& options, bool keeps_b
   TissueImage& tissues = made.image;
   tissues = make_tissue_image(image, options.labels);
   check_labels_exist(result.options, tissues);
-  check_memory(result.options, image, tissues);
+  const std::size_t most_tets = tets_that_fit(result.options, image, tissues);
   describe_islands(drop_islands(tissues, options.lattice.drop_islands), tissues, result.warnings);
   watch.stage_done("labels");
 
   LatticePlan plan = make_plan(tissues, result.options.lattice);
   plan.keeps_background = keeps_background;
+  plan.most_tets = most_tets;
   const SizeField sizes = make_sizes(tissues, result.options.lattice, reading);
   if (!sizes.empty()) plan.sizes = &sizes;
   LatticeOptions& lattice = result.options.lattice;

@@ -214,27 +214,48 @@ TEST(CheckMemory, MoreThanAllowedIsRefusedBeforehand) {
   EXPECT_NO_THROW(image_to_mesh(testing::sphere(), options));
 }
 
-// Sizes that nobody means must end in an error, not in a crash or in swapping.
+TEST(CheckMemory, LatticeThatOutgrowsItIsRefused) {
+  const LabelImage image = testing::sphere(24);
+  Options options;
+  options.lattice.bcc_size_mm = 4 * image.spacing_mm.x;
+  options.lattice.fidelity_stage = FidelityStage::lattice;
+  options.lattice.min_size_mm = image.spacing_mm.x / 8;
+  options.lattice.fidelity = 1;
+  options.max_memory_gib = 0.02;
+  EXPECT_TRUE(says(message_of<InvalidInput>([&] { image_to_mesh(image, options); }), "memory"));
+  options.lattice.fidelity = 0.5;
+  EXPECT_NO_THROW(image_to_mesh(image, options));
+}
+
+// Sizes that nobody means must end in an error or a mesh, not in a crash or in swapping.
+void expect_error_or_mesh(const Options& options) {
+  try {
+    EXPECT_FALSE(image_to_mesh(testing::sphere(4), options).mesh.tets.empty());
+  } catch (const Error& error) {
+    EXPECT_STRNE(error.what(), "");
+  }
+}
+
 TEST(CheckMemory, AbsurdSizesEndInAnErrorOrAMesh) {
   for (const double size : {1e-300, 1e-9, 1e-3, 1e6, 1e30, 1e300}) {
     SCOPED_TRACE(size);
     Options options;
     options.max_memory_gib = 1;
     options.lattice.bcc_size_mm = size;
-    try {
-      EXPECT_FALSE(image_to_mesh(testing::sphere(4), options).mesh.tets.empty());
-    } catch (const Error& error) {
-      EXPECT_STRNE(error.what(), "");
-    }
+    expect_error_or_mesh(options);
   }
 }
 
-TEST(CheckMemory, AbsurdSmallestSizesEndInAnError) {
+TEST(CheckMemory, AbsurdSmallestSizesEndInAnErrorOrAMesh) {
   for (const double size : {1e-300, 1e-9, 1e-4}) {
-    Options options;
-    options.max_memory_gib = 1;
-    options.lattice.min_size_mm = size;
-    EXPECT_THROW(image_to_mesh(testing::sphere(4), options), InvalidInput) << size;
+    for (const double fidelity : {0.95, 1.0}) {
+      SCOPED_TRACE(size);
+      Options options;
+      options.max_memory_gib = 0.1;
+      options.lattice.min_size_mm = size;
+      options.lattice.fidelity = fidelity;
+      expect_error_or_mesh(options);
+    }
   }
 }
 
