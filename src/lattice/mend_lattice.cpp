@@ -165,7 +165,7 @@ void LatticeMender::mend_pieces_here(std::vector<TetId>& changed, std::vector<Te
 
 void LatticeMender::mend_around_core(std::vector<TetId>& changed) {
   if (core_.points().empty()) return;
-  mend_neighbourhoods(complex_, pieces_, core_vertices(), contents_.sizes, kMaxGroup, changed);
+  mend_neighbourhoods(complex_, pieces_, core_vertices(), Reach::one_tissue, contents_.sizes, kMaxGroup, changed);
   core_ = {};
 }
 
@@ -223,9 +223,10 @@ std::vector<VertexId> LatticeMender::core_vertices() const {
 // The last resort, where refinement has come to its end: ever larger neighbourhoods of what is singular are given to
 // one tissue each.
 void LatticeMender::untangle() {
+  constexpr int kNearby = 4;  // so often no tissue is taken away from itself
   std::vector<VertexId> tangle;
-  for (std::vector<VertexId> singular = singular_vertices(complex_); !singular.empty();
-       singular = singular_vertices(complex_)) {
+  std::vector<VertexId> singular = singular_vertices(complex_);
+  for (int n = 0; !singular.empty(); ++n, singular = singular_vertices(complex_)) {
     std::vector<TetId> changed;
     tangle.insert(tangle.end(), singular.begin(), singular.end());
     const std::size_t known = tangle.size();
@@ -235,7 +236,8 @@ void LatticeMender::untangle() {
     }
     std::sort(tangle.begin(), tangle.end());
     tangle.erase(std::unique(tangle.begin(), tangle.end()), tangle.end());
-    mend_neighbourhoods(complex_, pieces_, tangle, contents_.sizes, origins_.size(), changed);
+    mend_neighbourhoods(complex_, pieces_, tangle, n < kNearby ? Reach::one_tissue : Reach::any, contents_.sizes,
+                        origins_.size(), changed);
     mend_single_tets(complex_, pieces_, singular_vertices(complex_), voxel_price(complex_, image_, contents_),
                      kMaxPrice, changed);
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <map>
 #include <numeric>
 #include <utility>
@@ -487,56 +488,112 @@ std::vector<VertexId> mend_single_tets(TetComplex& complex, Pieces& pieces, std:
 
 namespace {
 
-std::vector<std::vector<TetId>> group_neighbourhoods(const TetComplex& complex, std::span<const VertexId> vertices) {
+// Tetrahedra that hang together, and the tissues one of which they are to have.
+struct Group {
   std::vector<TetId> tets;
-  for (const VertexId v : vertices)
-    tets.insert(tets.end(), complex.tets_of_vertex[v].begin(), complex.tets_of_vertex[v].end());
-  std::sort(tets.begin(), tets.end());
-  tets.erase(std::unique(tets.begin(), tets.end()), tets.end());
-  const auto place = [&](TetId t) {
-    return static_cast<std::uint32_t>(std::lower_bound(tets.begin(), tets.end(), t) - tets.begin());
-  };
-  DisjointSets sets(tets.size());
-  for (const VertexId v : vertices) {
-    const auto star = complex.tets_of_vertex[v];
-    for (const TetId t : star) sets.join(place(star[0]), place(t));
+  std::vector<TissueId> tissues;  // ascending
+};
+
+std::vector<TissueId> tissues_at(const TetComplex& complex, VertexId v) {
+  std::vector<TissueId> tissues;
+  for (const TetId t : complex.tets_of_vertex[v]) tissues.push_back(complex.tissue(t));
+  std::ranges::sort(tissues);
+  const auto repeated = std::ranges::unique(tissues);
+  tissues.erase(repeated.begin(), repeated.end());
+  return tissues;
+}
+
+// Cuts the tetrahedra at some vertices into groups, from one vertex to the next.
+class Grouping {
+ public:
+  Grouping(const TetComplex& complex, std::span<const VertexId> vertices, Reach reach)
+      : complex_(complex),
+        reach_(reach),
+        is_open_(complex.mesh.points_mm.size(), 0),
+        is_grouped_(complex.mesh.tets.size(), 0) {
+    for (const VertexId v : vertices) is_open_[v] = 1;
   }
-  std::vector<std::vector<TetId>> groups;
-  std::vector<std::uint32_t> group(tets.size());
-  for (std::uint32_t i = 0; i < tets.size(); ++i) {
-    if (sets.is_root(i)) {
-      group[i] = static_cast<std::uint32_t>(groups.size());
-      groups.emplace_back();
-    } else {
-      group[i] = group[sets.root(i)];
+
+  Group around(VertexId first) {
+    Group group;
+    if (!is_open_[first]) return group;
+    group.tissues = tissues_at(complex_, first);
+    is_open_[first] = 0;
+    std::vector<VertexId> reached = {first};
+    for (std::size_t i = 0; i < reached.size(); ++i) {
+      for (const TetId t : complex_.tets_of_vertex[reached[i]]) {
+        if (is_grouped_[t]) continue;
+        is_grouped_[t] = 1;
+        group.tets.push_back(t);
+        for (const VertexId v : complex_.mesh.tets[t]) {
+          if (is_open_[v] && joins(group, v)) reached.push_back(v);
+        }
+      }
     }
-    groups[group[i]].push_back(tets[i]);
+    std::ranges::sort(group.tets);
+    return group;
+  }
+
+ private:
+  // Whether the group can take in a vertex, which then is no longer open.
+  bool joins(Group& group, VertexId v) {
+    const std::vector<TissueId> there = tissues_at(complex_, v);
+    std::vector<TissueId> tissues;
+    if (reach_ == Reach::one_tissue) {
+      std::ranges::set_intersection(group.tissues, there, std::back_inserter(tissues));
+    } else {
+      std::ranges::set_union(group.tissues, there, std::back_inserter(tissues));
+    }
+    if (tissues.empty()) return false;
+    group.tissues = std::move(tissues);
+    is_open_[v] = 0;
+    return true;
+  }
+
+  const TetComplex& complex_;
+  Reach reach_;
+  std::vector<char> is_open_;     // by vertex: one that no group has yet
+  std::vector<char> is_grouped_;  // by tetrahedron
+};
+
+// All of them are cut before any tetrahedron changes.
+std::vector<Group> grouped(const TetComplex& complex, std::span<const VertexId> vertices, Reach reach) {
+  Grouping grouping(complex, vertices, reach);
+  std::vector<Group> groups;
+  for (const VertexId v : vertices) {
+    Group group = grouping.around(v);
+    if (!group.tets.empty()) groups.push_back(std::move(group));
   }
   return groups;
 }
 
-TissueId choose_tissue(const TetComplex& complex, const Pieces& pieces, const std::vector<TetId>& group,
+// That of the largest volume, if it can be.
+TissueId choose_tissue(const TetComplex& complex, const Pieces& pieces, const Group& group,
                        std::span<const float> sizes) {
   std::map<TissueId, double> volume;
-  for (const TetId t : group) volume[complex.tissue(t)] += static_cast<double>(sizes[t]);
+  for (const TissueId tissue : group.tissues) volume[tissue] = 0;
+  for (const TetId t : group.tets) {
+    const auto known = volume.find(complex.tissue(t));
+    if (known != volume.end()) known->second += static_cast<double>(sizes[t]);
+  }
   std::vector<std::pair<double, TissueId>> order;
   for (const auto& [tissue, v] : volume) order.emplace_back(-v, tissue);
   std::sort(order.begin(), order.end());
   for (const auto& [v, tissue] : order) {
-    if (joins_no_pieces(complex, pieces, group, tissue)) return tissue;
+    if (joins_no_pieces(complex, pieces, group.tets, tissue)) return tissue;
   }
   return order.front().second;
 }
 
 }  // namespace
 
-void mend_neighbourhoods(TetComplex& complex, Pieces& pieces, std::span<const VertexId> vertices,
+void mend_neighbourhoods(TetComplex& complex, Pieces& pieces, std::span<const VertexId> vertices, Reach reach,
                          std::span<const float> sizes, std::size_t max_tets, std::vector<TetId>& changed) {
   const std::size_t done = changed.size();
-  for (const std::vector<TetId>& group : group_neighbourhoods(complex, vertices)) {
-    if (group.size() > max_tets) continue;
+  for (const Group& group : grouped(complex, vertices, reach)) {
+    if (group.tets.size() > max_tets) continue;
     const TissueId tissue = choose_tissue(complex, pieces, group, sizes);
-    for (const TetId t : group) {
+    for (const TetId t : group.tets) {
       if (complex.tissue(t) == tissue) continue;
       complex.mesh.tissues[t] = tissue;
       changed.push_back(t);

@@ -35,12 +35,15 @@ inline constexpr double kTooDear = 1e6;
 std::vector<VertexId> mend_single_tets(TetComplex& complex, Pieces& pieces, std::vector<VertexId> singular,
                                        const RelabelPrice& price, double max_price, std::vector<TetId>& changed);
 
-/// Gives all tetrahedra that touch these vertices to one tissue (one for each group of vertices that touch
-/// common tetrahedra): the one with most volume among them that neither joins two pieces nor makes one vanish. Where
-/// the vertices are all the singular ones and the tetrahedra around them lie as in a regular neighbourhood, no defect
-/// is left. Groups of more than max_tets tetrahedra are left alone. sizes: volumes of the tetrahedra. Pieces are found
-/// anew.
-void mend_neighbourhoods(TetComplex& complex, Pieces& pieces, std::span<const VertexId> vertices,
+/// How far one group of vertices goes: as long as there is a tissue that all of them touch, so that no tissue creeps
+/// along a line away from itself; or as far as they touch common tetrahedra.
+enum class Reach { one_tissue, any };
+
+/// Gives the tetrahedra that touch these vertices to one tissue for each group of them: the one with most volume among
+/// those allowed that neither joins two pieces nor makes one vanish. With Reach::any, where the vertices are all the
+/// singular ones and the tetrahedra around them lie as in a regular neighbourhood, no defect is left. Groups of more
+/// than max_tets tetrahedra are left alone. sizes: volumes of the tetrahedra. Pieces are found anew.
+void mend_neighbourhoods(TetComplex& complex, Pieces& pieces, std::span<const VertexId> vertices, Reach reach,
                          std::span<const float> sizes, std::size_t max_tets, std::vector<TetId>& changed);
 
 }  // namespace anatomesh

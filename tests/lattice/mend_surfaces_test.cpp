@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 #include <set>
 
+#include "base/vec.h"
 #include "lattice/lattice_mesh.h"
 #include "lattice/surface_checks.h"
 #include "mesh/mesh_checks.h"
@@ -132,13 +134,53 @@ TEST(MendSurfaces, NeighbourhoodsTakeOneTissue) {
   const auto singular = singular_vertices(complex);
   ASSERT_FALSE(singular.empty());
   std::vector<TetId> changed;
-  mend_neighbourhoods(complex, pieces, singular, sizes, complex.mesh.tets.size(), changed);
+  mend_neighbourhoods(complex, pieces, singular, Reach::any, sizes, complex.mesh.tets.size(), changed);
   for (const VertexId v : singular) {
     const auto star = complex.tets_of_vertex[v];
     EXPECT_TRUE(
         std::all_of(star.begin(), star.end(), [&](TetId t) { return complex.tissue(t) == complex.tissue(star[0]); }));
     EXPECT_EQ(star_defect(complex, v), 0u);
   }
+}
+
+/// Bricks that change along x, each in two quarters of the block that touch along its axis only.
+TissueMesh bricks_around_a_line() {
+  const RedGreenLattice lattice({12, 5, 5}, 1);
+  const auto [points, tets] = testing::mesh_of(lattice);
+  TissueMesh mesh{points, tets, {}};
+  for (const auto& tet : tets) {
+    Vec3 sum{};
+    for (const VertexId v : tet) sum = sum + points[v];
+    const bool first = std::abs(sum.y - 4 * 20) > std::abs(sum.z - 4 * 20);
+    const double brick = std::floor((sum.x / 4 + (first ? 0 : 12)) / 24);
+    mesh.tissues.push_back(static_cast<TissueId>(1 + 2 * brick + (first ? 0 : 1)));
+  }
+  return mesh;
+}
+
+TEST(MendSurfaces, NoTissueCreepsAlongALine) {
+  TetComplex complex = make_complex(bricks_around_a_line());
+  const auto before = complex.mesh.tissues;
+  Pieces pieces = find_pieces(complex);
+  const std::vector<float> sizes(complex.mesh.tets.size(), 1);
+  std::vector<VertexId> on_line;
+  for (const VertexId v : singular_vertices(complex)) {
+    const Vec3 p = complex.mesh.points_mm[v];
+    if (std::abs(p.y - 20) < 8 && std::abs(p.z - 20) < 8) on_line.push_back(v);
+  }
+  ASSERT_GT(on_line.size(), 8u);
+  std::vector<TetId> changed;
+  mend_neighbourhoods(complex, pieces, on_line, Reach::one_tissue, sizes, before.size(), changed);
+  EXPECT_FALSE(changed.empty());
+  std::set<TissueId> takers;
+  for (const TetId t : changed) {
+    takers.insert(complex.tissue(t));
+    const auto had_it = [&](VertexId v) {
+      return std::ranges::any_of(complex.tets_of_vertex[v], [&](TetId o) { return before[o] == complex.tissue(t); });
+    };
+    EXPECT_TRUE(std::ranges::any_of(complex.mesh.tets[t], had_it)) << t;
+  }
+  EXPECT_GT(takers.size(), 1u);
 }
 
 }  // namespace
