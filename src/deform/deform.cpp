@@ -31,10 +31,14 @@ std::vector<EdgePoint> find_targets(const TissueImage& image, const DeformOption
 
 }  // namespace
 
+ShapeBounds bounds_of(const DeformOptions& options) {
+  return ShapeBounds::from_degrees(options.min_dihedral_deg, options.max_dihedral_deg, options.min_mean_ratio);
+}
+
 Deformer::Deformer(const TissueImage& image, const DeformOptions& options, const Stage& stage)
     : image_(image),
       options_(options),
-      bounds_(ShapeBounds::from_degrees(options.min_dihedral_deg, options.max_dihedral_deg, options.min_mean_ratio)),
+      bounds_(bounds_of(options)),
       materials_(materials_of(image, options)),
       field_(image),
       targets_(find_targets(image, options, stage)) {}

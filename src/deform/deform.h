@@ -14,6 +14,9 @@
 
 namespace anatomesh {
 
+/// Those that every tetrahedron of the tissues is to be inside.
+ShapeBounds bounds_of(const DeformOptions& options);
+
 /// Deforms lattices over one image in two steps, so that the pipeline can look at the first and refine the lattice
 /// where it falls short. Every tetrahedron stays inside the bounds of the options throughout, as those of the lattice
 /// are. Holds references to the image and the options, which must outlive it.

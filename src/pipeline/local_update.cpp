@@ -11,6 +11,7 @@
 #include "boundary/surface_field.h"
 #include "deform/angle_guard.h"
 #include "deform/coarsen.h"
+#include "deform/deform.h"
 #include "deform/flip_interfaces.h"
 #include "deform/improve_shapes.h"
 #include "deform/interface_faces.h"
@@ -40,10 +41,6 @@ constexpr double kWorthwhile = 0.4, kMost = 0.8;
 constexpr double kFiner = 0.65, kFinest = 0.4;  // of the size before; of the mean voxel spacing
 constexpr double kFinerThere = 0.45;            // the first of them at single places
 constexpr int kMargin = 6;                      // voxels around the patch that the field looks at
-
-ShapeBounds bounds_of(const DeformOptions& o) {
-  return ShapeBounds::from_degrees(o.min_dihedral_deg, o.max_dihedral_deg, o.min_mean_ratio);
-}
 
 // The box of the image around a change and the interfaces of a patch.
 TissueImage box_around(const TissueImage& image, const IndexBox& change, const TissueMesh& mesh) {
