@@ -134,9 +134,8 @@ bool ShapeImprover::move_vertex(VertexId v) {
 }
 
 bool ShapeImprover::visit(TetId t) {
-  constexpr std::array<std::array<std::size_t, 2>, 6> kEdges = {{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
   const Tet tet = mesh_.tet(t);
-  for (const auto& [i, j] : kEdges) {
+  for (const auto& [i, j] : kEdgeCorners) {
     if (remove_edge(tet[i], tet[j])) return true;
   }
   for (std::size_t n = 0; n < 4; ++n) {

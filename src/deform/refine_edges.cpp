@@ -15,7 +15,6 @@ constexpr int kRounds = 14;
 constexpr double kLong = 4.0 / 3;     // of the size asked for
 constexpr double kGoodSlack = 0.1;    // tetrahedra with less are improved between two rounds of splits
 constexpr double kSplitSlack = 0.01;  // that the halves have at least
-constexpr std::array<std::array<std::size_t, 2>, 6> kEdges = {{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
 
 struct Edge {
   double weight;  // the largest first
@@ -66,7 +65,7 @@ std::vector<Edge> find_long_edges(const MeshEditor& mesh, const std::function<do
     if (!mesh.is_alive(t)) continue;
     const auto& tet = mesh.tet(t);
     if (std::ranges::none_of(tet, [&](VertexId v) { return mesh.changed_at(v) >= since; })) continue;
-    for (const auto& [i, j] : kEdges) {
+    for (const auto& [i, j] : kEdgeCorners) {
       const VertexId a = std::min(tet[i], tet[j]), b = std::max(tet[i], tet[j]);
       if (is_cut(mesh, a, b)) continue;
       edges.push_back({0, a, b});
@@ -102,7 +101,7 @@ std::vector<Edge> find_bridges(const MeshEditor& mesh) {
     if (!mesh.is_alive(t) || mesh.tissue(t) == 0) continue;
     const auto& tet = mesh.tet(t);
     if (!std::ranges::all_of(tet, [&](VertexId v) { return mesh.tissues_at(v) > 1; })) continue;
-    for (const auto& [i, j] : kEdges) {
+    for (const auto& [i, j] : kEdgeCorners) {
       const VertexId a = std::min(tet[i], tet[j]), b = std::max(tet[i], tet[j]);
       if (!is_cut(mesh, a, b) && is_inner(mesh, a, b)) edges.push_back({norm(mesh.point(a) - mesh.point(b)), a, b});
     }
@@ -146,7 +145,7 @@ std::size_t split_tets(MeshEditor& mesh, const ShapeBounds& bounds, const std::v
   std::size_t splits = 0;
   for (const auto& tet : marked) {
     std::vector<Edge> edges;
-    for (const auto& [i, j] : kEdges) {
+    for (const auto& [i, j] : kEdgeCorners) {
       if (is_cut(mesh, tet[i], tet[j])) continue;
       edges.push_back(
           {norm(mesh.point(tet[i]) - mesh.point(tet[j])), std::min(tet[i], tet[j]), std::max(tet[i], tet[j])});

@@ -12,15 +12,13 @@
 namespace anatomesh {
 namespace {
 
-constexpr std::array<std::array<std::size_t, 2>, 6> kEdges = {{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
-
 // Mean length of the edges between interface vertices at each; infinity elsewhere.
 std::vector<double> sizes_at_interfaces(const MeshEditor& mesh) {
   std::vector<double> sum(mesh.vertex_count()), count(mesh.vertex_count());
   for (TetId t = 0; t < mesh.tet_count(); ++t) {
     if (!mesh.is_alive(t) || mesh.tissue(t) == 0) continue;
     const auto& tet = mesh.tet(t);
-    for (const auto& [i, j] : kEdges) {
+    for (const auto& [i, j] : kEdgeCorners) {
       if (mesh.tissues_at(tet[i]) < 2 || mesh.tissues_at(tet[j]) < 2) continue;
       const double length = norm(mesh.point(tet[i]) - mesh.point(tet[j]));
       for (const VertexId v : {tet[i], tet[j]}) {
@@ -48,7 +46,7 @@ std::vector<LongEdge> find_long_edges(const MeshEditor& mesh, const SizeField& s
   for (TetId t = 0; t < mesh.tet_count(); ++t) {
     if (!mesh.is_alive(t) || mesh.tissue(t) == 0) continue;
     const auto& tet = mesh.tet(t);
-    for (const auto& [i, j] : kEdges) {
+    for (const auto& [i, j] : kEdgeCorners) {
       const Vec3 a = mesh.point(tet[i]), b = mesh.point(tet[j]);
       const double length2 = norm_squared(a - b), size = sizes.at(mesh.tissue(t), 0.5 * (a + b));
       if (length2 > size * size) edges.push_back({length2, std::min(tet[i], tet[j]), std::max(tet[i], tet[j])});

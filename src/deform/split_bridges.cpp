@@ -13,7 +13,6 @@ namespace anatomesh {
 namespace {
 
 constexpr int kRounds = 6;
-constexpr std::array<std::array<std::size_t, 2>, 6> kEdges = {{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
 
 struct Bridge {
   double length2;
@@ -47,7 +46,7 @@ void append_bridges(const TissueMesh& mesh, const Neighbourhood& near, TetId t, 
   const auto& tet = mesh.tets[t];
   if (mesh.tissues[t] == 0) return;
   if (!std::ranges::all_of(tet, [&](VertexId v) { return near.on_interface(v); })) return;
-  for (const auto& [i, j] : kEdges) {
+  for (const auto& [i, j] : kEdgeCorners) {
     const VertexId a = std::min(tet[i], tet[j]), b = std::max(tet[i], tet[j]);
     if (std::ranges::all_of(tets_around(near, a, b), [&](TetId r) { return mesh.tissues[r] == mesh.tissues[t]; }))
       bridges.push_back({norm_squared(mesh.points_mm[a] - mesh.points_mm[b]), a, b});

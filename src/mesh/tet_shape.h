@@ -112,6 +112,10 @@ inline double slack(const ShapeBounds& bounds, Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
 /// Bounds of the cushion: positive volumes with a little to spare.
 inline constexpr ShapeBounds kCushionBounds = {1, -1, 0.05};
 
+/// The two corners of each edge of a tetrahedron.
+inline constexpr std::array<std::array<std::size_t, 2>, 6> kEdgeCorners = {
+    {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
+
 /// The corners of a tetrahedron in even permutations, by the corner that they begin with.
 inline constexpr std::array<std::array<std::size_t, 4>, 4> kCornersFrom = {
     {{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 3, 0, 1}, {3, 2, 1, 0}}};

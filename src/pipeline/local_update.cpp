@@ -451,12 +451,10 @@ std::vector<double> surface_edges_mm(const TissueMesh& mesh, std::size_t tissues
   std::vector<double> sum(tissues, 0), count(tissues, 0);
   for (TetId t = 0; t < mesh.tets.size(); ++t) {
     const auto& tet = mesh.tets[t];
-    for (std::size_t i = 0; i < 4; ++i) {
-      for (std::size_t j = i + 1; j < 4; ++j) {
-        if (!on_interface[tet[i]] || !on_interface[tet[j]]) continue;
-        sum[mesh.tissues[t]] += norm(mesh.points_mm[tet[i]] - mesh.points_mm[tet[j]]);
-        ++count[mesh.tissues[t]];
-      }
+    for (const auto& [i, j] : kEdgeCorners) {
+      if (!on_interface[tet[i]] || !on_interface[tet[j]]) continue;
+      sum[mesh.tissues[t]] += norm(mesh.points_mm[tet[i]] - mesh.points_mm[tet[j]]);
+      ++count[mesh.tissues[t]];
     }
   }
   for (std::size_t t = 0; t < tissues; ++t) sum[t] = t > 0 && count[t] > 0 ? sum[t] / count[t] : 0;
