@@ -7,6 +7,7 @@
 
 #include "base/vec.h"
 #include "deform/improve_shapes.h"
+#include "deform/split_bridges.h"
 
 namespace anatomesh {
 namespace {
@@ -175,10 +176,7 @@ std::size_t split_around(MeshEditor& mesh, const ShapeBounds& bounds, VertexId v
 }
 
 std::size_t split_bridges(MeshEditor& mesh, const ShapeBounds& asked, const Stage& stage) {
-  const ShapeBounds well = ShapeBounds::from_degrees(25, 135, 0.4);
-  const ShapeBounds bounds = {std::min(well.largest_cos, asked.largest_cos),
-                              std::max(well.smallest_cos, asked.smallest_cos),
-                              std::max(well.min_mean_ratio, asked.min_mean_ratio)};
+  const ShapeBounds bounds = well_shaped(asked);
   std::size_t splits = 0;
   for (std::size_t before = 1; splits != before;) {
     stage.check_cancelled();

@@ -94,11 +94,14 @@ void split(TissueMesh& mesh, const Bridge& edge, const std::vector<TetId>& ring,
 
 }  // namespace
 
-void split_bridges(TissueMesh& mesh, const ShapeBounds& asked, const Stage& stage) {
+ShapeBounds well_shaped(const ShapeBounds& asked) {
   const ShapeBounds well = ShapeBounds::from_degrees(25, 135, 0.4);
-  const ShapeBounds bounds = {std::min(well.largest_cos, asked.largest_cos),
-                              std::max(well.smallest_cos, asked.smallest_cos),
-                              std::max(well.min_mean_ratio, asked.min_mean_ratio)};
+  return {std::min(well.largest_cos, asked.largest_cos), std::max(well.smallest_cos, asked.smallest_cos),
+          std::max(well.min_mean_ratio, asked.min_mean_ratio)};
+}
+
+void split_bridges(TissueMesh& mesh, const ShapeBounds& asked, const Stage& stage) {
+  const ShapeBounds bounds = well_shaped(asked);
   for (int round = 0; round < kRounds; ++round) {
     stage.check_cancelled();
     const Neighbourhood near(mesh);
