@@ -27,23 +27,10 @@ constexpr int kLaterSmoothings = 2;  // after they were
 constexpr int kSettleSweeps = 3;
 constexpr int kRounds = 10;
 constexpr int kToleranceSteps = 3;
-constexpr double kEnoughSlack = 0.03;   // tetrahedra with less are worth improving: some 5 degrees above 20
-constexpr double kSlidingSlack = 0.02;  // with less, worth moving an interface vertex: some 3 degrees
-constexpr double kEarlyMarginDeg = 8;   // collapses that must leave room for smoothing
 constexpr double kInterfaceMarginDeg = 2;
 // Blocks to be worked on at once: so many at least, of so many tetrahedra.
 constexpr std::size_t kBlocks = 8, kLeast = 1 << 13, kMost = 1 << 16;
 constexpr std::array<std::array<double, 2>, 3> kShares = {{{0.5, 0.35}, {0.42, 0.6}, {0.46, 0.32}}};
-
-// Bounds that are tighter by an angle, as far as the lattice's own angles allow to reach them.
-ShapeBounds tightened(const ShapeBounds& bounds, double margin_deg) {
-  constexpr double kRadians = std::numbers::pi / 180, kLowestDeg = 30, kHighestDeg = 117;
-  const auto degrees = [](double cosine) { return std::acos(std::clamp(cosine, -1.0, 1.0)) / kRadians; };
-  const double low = degrees(bounds.largest_cos), high = degrees(bounds.smallest_cos);
-  return {std::min(bounds.largest_cos, std::cos(std::min(low + margin_deg, kLowestDeg) * kRadians)),
-          std::max(bounds.smallest_cos, std::cos(std::max(high - margin_deg, kHighestDeg) * kRadians)),
-          bounds.min_mean_ratio};
-}
 
 class Improver {
  public:
@@ -201,6 +188,15 @@ ImproveReport Improver::run() {
 }
 
 }  // namespace
+
+ShapeBounds tightened(const ShapeBounds& bounds, double margin_deg) {
+  constexpr double kRadians = std::numbers::pi / 180, kLowestDeg = 30, kHighestDeg = 117;
+  const auto degrees = [](double cosine) { return std::acos(std::clamp(cosine, -1.0, 1.0)) / kRadians; };
+  const double low = degrees(bounds.largest_cos), high = degrees(bounds.smallest_cos);
+  return {std::min(bounds.largest_cos, std::cos(std::min(low + margin_deg, kLowestDeg) * kRadians)),
+          std::max(bounds.smallest_cos, std::cos(std::max(high - margin_deg, kHighestDeg) * kRadians)),
+          bounds.min_mean_ratio};
+}
 
 ImproveReport improve(TissueMesh& mesh, const SurfaceField& field, const ShapeBounds& bounds,
                       const ImproveOptions& options, VolumeShifts& shifts, const Stage& stage) {

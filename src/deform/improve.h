@@ -14,6 +14,16 @@
 
 namespace anatomesh {
 
+/// Slack of tetrahedra: those with less are worth improving (some 5 degrees above 20), those with less worth moving an
+/// interface vertex (some 3 degrees).
+inline constexpr double kEnoughSlack = 0.03, kSlidingSlack = 0.02;
+
+/// By so much the bounds of the first collapses are tighter, which must leave room for smoothing.
+inline constexpr double kEarlyMarginDeg = 8;
+
+/// Bounds that are tighter by an angle, as far as the lattice's own angles allow to reach them.
+ShapeBounds tightened(const ShapeBounds& bounds, double margin_deg);
+
 /// What may change, and what the elements' sizes should be.
 struct ImproveOptions {
   double surface_tolerance_mm = 0;  ///< how far interfaces may move to save elements, >= 0; 0: they keep their vertices

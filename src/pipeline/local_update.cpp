@@ -13,6 +13,7 @@
 #include "deform/coarsen.h"
 #include "deform/deform.h"
 #include "deform/flip_interfaces.h"
+#include "deform/improve.h"
 #include "deform/improve_shapes.h"
 #include "deform/interface_faces.h"
 #include "deform/refine_edges.h"
@@ -242,7 +243,6 @@ void LocalUpdate::deform() {
 
 // As improve() does for a whole mesh.
 void LocalUpdate::improve() {
-  constexpr double kEnoughSlack = 0.03, kSlidingSlack = 0.02;
   const auto coarsen_to = [&](const ShapeBounds& bounds) {
     as_tissue(true);
     MeshEditor editor(mesh_);
@@ -253,7 +253,7 @@ void LocalUpdate::improve() {
     mesh_ = editor.result();
     as_tissue(false);
   };
-  coarsen_to(ShapeBounds::from_degrees(28, 142, 0.3));
+  coarsen_to(tightened(bounds_, kEarlyMarginDeg));
   for (int n = 0; n < 3; ++n) {
     MeshEditor editor(mesh_);
     flip_interfaces(editor, *field_, bounds_, stage_);

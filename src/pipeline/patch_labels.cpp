@@ -13,6 +13,7 @@
 #include "base/parallel.h"
 #include "base/vec.h"
 #include "boundary/label_field.h"
+#include "deform/improve.h"
 #include "deform/improve_shapes.h"
 #include "deform/refine_edges.h"
 #include "lattice/clean_labels.h"
@@ -26,7 +27,6 @@ namespace {
 
 constexpr int kMaxRounds = 8;
 constexpr double kMaxPrice = 5;               // voxels that a relabelled tetrahedron may cost
-constexpr double kGoodSlack = 0.03;           // that tetrahedra are improved to between two rounds
 constexpr int kFewRings = 2, kManyRings = 3;  // of tetrahedra around a singular vertex that are given to one tissue
 constexpr float kSmallest = 0.02f;            // voxels; smaller tetrahedra are not split
 constexpr int kFewPoints = 3, kManyPoints = 8;
@@ -303,7 +303,7 @@ bool PatchMender::refine(std::vector<TetId>& marked, const Stage& stage) {
   std::size_t splits = split_tets(editor, mending_.bounds, marked);
   for (const VertexId v : singular_) splits += split_around(editor, mending_.bounds, v);
   if (splits == 0) return false;
-  improve_shapes(editor, mending_.bounds, kGoodSlack, stage);
+  improve_shapes(editor, mending_.bounds, kEnoughSlack, stage);
   mesh_ = editor.result();
   std::ranges::replace(mesh_.tissues, air, TissueId{0});
   return true;
