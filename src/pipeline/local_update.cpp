@@ -29,6 +29,7 @@
 #include "pipeline/patch_labels.h"
 #include "pipeline/patch_sizes.h"
 #include "pipeline/patch_weights.h"
+#include "pipeline/surface_sizes.h"
 
 namespace anatomesh {
 namespace {
@@ -147,12 +148,10 @@ class LocalUpdate {
 
 // The size along a tissue's surface that image_to_mesh() would begin with, mm.
 double first_size(const TissueImage& image, std::size_t tissue, double area_mm2, double wanted) {
-  constexpr double kWrongShare = 0.006, kLayer = 0.08, kEdge = 0.9;
-  const Vec3 s = image.spacing_mm;
+  constexpr double kEdge = 0.9;
   const double thick = image.volume_mm3(tissue) / area_mm2;
-  double wrong = std::max(1e-3, 1 - wanted);
-  wrong = std::min(wrong, wrong / 0.05 * kLayer * std::max({s.x, s.y, s.z}) / thick);
-  return kEdge * std::sqrt(wrong / kWrongShare) * thick;
+  const double wrong = std::max(1e-3, 1 - wanted);
+  return kEdge * spacing_for(std::min(wrong, wrong_layer_mm(image, wrong) / thick)) * thick;
 }
 
 // The tissues' boundaries in the changed image.

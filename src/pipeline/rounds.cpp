@@ -35,10 +35,8 @@ constexpr int kMaxTries = 4;
 constexpr double kWorst = 2;
 // Of the tetrahedra of a lattice about this share is left when the mesh is finished.
 constexpr double kShareLeft = 0.6;
-// Surfaces of tissues of more than kLarge voxels have to lie near their boundary, too: at F = 0.95, the voxels that may
-// be wrong are at most a layer of this share of the largest voxel spacing all over the boundary.
+// Surfaces of tissues of more voxels have to lie near their boundary, too.
 constexpr std::uint64_t kLarge = 5000;
-constexpr double kLayer = 0.08;
 // Voxels far from the mesh's surfaces are cared for where there is one of them to so many on the tissue's boundary, in
 // so many rounds.
 constexpr double kMissed = 0.015;
@@ -142,12 +140,11 @@ class Rounds {
 
 std::vector<double> Rounds::aims(const TissueImage& image, const std::vector<double>& wanted) {
   const std::vector<double> area_mm2 = boundary_areas_mm2(image);
-  const double spacing = std::max({image.spacing_mm.x, image.spacing_mm.y, image.spacing_mm.z});
   std::vector<double> aims = wanted;
   for (std::size_t t = 1; t < wanted.size(); ++t) {
     double wrong = 1 - wanted[t];
     if (image.counts[t] > kLarge)
-      wrong = std::min(wrong, wrong / 0.05 * kLayer * spacing * area_mm2[t] / image.volume_mm3(t));
+      wrong = std::min(wrong, wrong_layer_mm(image, wrong) * area_mm2[t] / image.volume_mm3(t));
     aims[t] = 1 - (1 - kReserve) * wrong;
   }
   return aims;

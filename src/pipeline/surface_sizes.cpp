@@ -14,6 +14,8 @@ namespace {
 // surface, this times (h A / V)^2 of the voxels are wrong, at first; finer surfaces gain with a lower power of h.
 constexpr double kWrongShare = 0.006;
 constexpr double kPower = 1.6;
+// At F = 0.95, the voxels that may be wrong are at most a layer of this share of the largest voxel spacing.
+constexpr double kLayer = 0.08;
 // Tetrahedra of a finished mesh for each square of the spacing on an interface.
 constexpr double kTetsPerSquare = 6;
 // A spacing may be that much larger than asked.
@@ -47,6 +49,12 @@ void set_root(LatticePlan& plan, const TissueImage& image, double root_mm, doubl
   plan.extra_levels = static_cast<int>(std::clamp(std::ceil(std::log2(4 * smallest / thinnest)), 0.0, 8.0));
 }
 
+double spacing_for(double wrong) { return std::sqrt(wrong / kWrongShare); }
+
+double wrong_layer_mm(const TissueImage& image, double wrong) {
+  return wrong / 0.05 * kLayer * std::max({image.spacing_mm.x, image.spacing_mm.y, image.spacing_mm.z});
+}
+
 SurfaceSizes::SurfaceSizes(const TissueImage& image, const Range& range, std::span<const double> wanted)
     : image_(image),
       range_(range),
@@ -56,7 +64,7 @@ SurfaceSizes::SurfaceSizes(const TissueImage& image, const Range& range, std::sp
       last_wrong_(wanted.size(), std::numeric_limits<double>::infinity()) {
   for (std::size_t t = 1; t < wanted.size(); ++t) {
     wrong_[t] = 1 - wanted[t];
-    size_mm_[t] = std::sqrt(wrong_[t] / kWrongShare) * image.volume_mm3(t) / area_mm2_[t];
+    size_mm_[t] = spacing_for(wrong_[t]) * image.volume_mm3(t) / area_mm2_[t];
   }
 }
 

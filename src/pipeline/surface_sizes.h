@@ -13,6 +13,14 @@ namespace anatomesh {
 /// tissues of one voxel.
 void set_root(LatticePlan& plan, const TissueImage& image, double root_mm, double smallest_mm);
 
+/// Spacing of a lattice along the surface of a tissue, in mean thicknesses of it (volume over area), with which about
+/// this share of its voxels is wrong.
+double spacing_for(double wrong);
+
+/// Surfaces of large tissues have to lie near their boundary, too: how thick a layer of wrong voxels may be all over it
+/// (mm) where this share of the tissue's voxels may be wrong.
+double wrong_layer_mm(const TissueImage& image, double wrong);
+
 /// Chooses the spacing of the lattice along each tissue's surface: the same all along it, since surfaces made of
 /// tetrahedra of one size were measured to be smoother, nearer and of fewer tetrahedra than those refined here and
 /// there to the same fidelity. A first guess comes from the tissue's volume and surface, better ones from what a
