@@ -8,7 +8,6 @@
 
 #include "base/parallel.h"
 #include "base/vec.h"
-#include "lattice/tet_complex.h"
 
 namespace anatomesh {
 namespace {
@@ -101,8 +100,8 @@ bool VoxelBlocks::meets(Vec3 low_mm, Vec3 high_mm, Vec3 spacing_mm) const {
   return false;
 }
 
-std::vector<char> border_vertices(const TissueMesh& mesh) {
-  const TetComplex complex = make_complex(mesh);
+std::vector<char> border_vertices(const TetComplex& complex) {
+  const TissueMesh& mesh = complex.mesh;
   std::vector<char> is_border(mesh.points_mm.size(), 0);
   for (TetId t = 0; t < mesh.tets.size(); ++t) {
     for (std::size_t n = 0; n < 4; ++n) {
@@ -114,6 +113,8 @@ std::vector<char> border_vertices(const TissueMesh& mesh) {
   }
   return is_border;
 }
+
+std::vector<char> border_vertices(const TissueMesh& mesh) { return border_vertices(make_complex(mesh)); }
 
 MeshPatch take_patch(const TissueMesh& whole, const VoxelBlocks& blocks, Vec3 spacing_mm, int rings) {
   std::vector<char> chosen(whole.tets.size(), 0);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "image/tissue_image.h"
+#include "lattice/tet_complex.h"
 #include "mesh/tissue_mesh.h"
 
 namespace anatomesh {
@@ -62,7 +63,8 @@ MeshPatch take_patch(const TissueMesh& whole, const VoxelBlocks& blocks, Vec3 sp
 /// may remain: returns how many do. Cost: linear in the patch.
 std::size_t put_patch(TissueMesh& whole, const MeshPatch& patch, const TissueMesh& changed);
 
-/// Vertices that lie on a face of one tetrahedron only.
+/// By vertex: whether it lies on a face of one tetrahedron only.
+std::vector<char> border_vertices(const TetComplex& complex);
 std::vector<char> border_vertices(const TissueMesh& mesh);
 
 /// In a mesh whose tissues' surfaces are manifold. counted: by tissue, whether to look at it; [0] unused. Cost: a pass

@@ -152,14 +152,7 @@ class PatchMender {
 
 void PatchMender::take_mesh(bool may_refine) {
   complex_ = make_complex(mesh_);
-  is_border_.assign(mesh_.points_mm.size(), 0);
-  for (TetId t = 0; t < mesh_.tets.size(); ++t) {
-    for (std::size_t n = 0; n < 4; ++n) {
-      for (std::size_t m = 0; m < 4 && complex_.behind[t][n] == t; ++m) {
-        if (m != n) is_border_[mesh_.tets[t][m]] = 1;
-      }
-    }
-  }
+  is_border_ = border_vertices(complex_);
   join_beyond();
   pieces_ = find_pieces(complex_);
   find_voxels();
