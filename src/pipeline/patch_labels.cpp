@@ -89,7 +89,8 @@ TissueId voted(const TissueMesh& mesh, TetId t, const LabelField& field, const s
 
 class PatchMender {
  public:
-  PatchMender(TissueMesh& mesh, const LabelMending& mending) : mesh_(mesh), mending_(mending) {
+  PatchMender(TissueMesh& mesh, const LabelMending& mending)
+      : mesh_(mesh), mending_(mending), price_in_voxels_(voxel_price(complex_, mending.image, contents_)) {
     for (VertexId v = 0; v < mending.border_mm.size(); ++v) {
       const Vec3& p = mending.border_mm[v];
       border_.emplace(std::array{p.x, p.y, p.z}, v);
@@ -144,6 +145,7 @@ class PatchMender {
   Pieces pieces_;
   std::vector<char> is_border_;
   TetContents contents_;
+  RelabelPrice price_in_voxels_;
   std::vector<std::uint32_t> voxel_begin_, voxels_;  // by tetrahedron
   std::vector<TetId> owner_;                         // by voxel of the part
   std::vector<char> is_bad_;                         // outside the bounds: background that cannot become a tissue
@@ -374,13 +376,7 @@ void PatchMender::untangle(int max_rings, double max_price) {
 }
 
 double PatchMender::price(TetId t, TissueId tissue) const {
-  if (contents_.fixed[t] || (tissue != 0 && is_bad_[t])) return 2 * kTooDear;
-  double price = 0;
-  for (const std::uint32_t v : contents_.voxels(t)) {
-    price += mending_.image.voxels[v] == complex_.tissue(t);
-    price -= mending_.image.voxels[v] == tissue;
-  }
-  return std::max(0.0, price);
+  return tissue != 0 && is_bad_[t] ? 2 * kTooDear : price_in_voxels_(t, tissue);
 }
 
 }  // namespace
