@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <unordered_map>
 #include <utility>
 
 #include "base/parallel.h"
 #include "base/vec.h"
+#include "mesh/vertices_by_point.h"
 
 namespace anatomesh {
 namespace {
@@ -15,20 +14,6 @@ namespace {
 constexpr auto kNone = static_cast<std::uint32_t>(-1);
 
 std::int64_t floor_div(std::int64_t a, std::int64_t b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
-
-struct PointHash {
-  std::size_t operator()(const Vec3& p) const {
-    std::uint64_t h = 0;
-    for (std::size_t a = 0; a < 3; ++a) {
-      std::uint64_t bits;
-      const double c = p[a] + 0.0;  // -0 becomes 0
-      std::memcpy(&bits, &c, sizeof bits);
-      h = (h ^ bits) * 0x9e3779b97f4a7c15u;
-      h ^= h >> 29u;
-    }
-    return h;
-  }
-};
 
 // The tetrahedra with a vertex of those chosen already.
 void add_ring(const TissueMesh& whole, std::vector<char>& chosen) {
@@ -151,11 +136,11 @@ MeshPatch take_patch(const TissueMesh& whole, const VoxelBlocks& blocks, Vec3 sp
 }
 
 std::size_t put_patch(TissueMesh& whole, const MeshPatch& patch, const TissueMesh& changed) {
-  std::unordered_map<Vec3, VertexId, PointHash> border;
+  VerticesByPoint border;
   std::vector<VertexId> free;
   for (std::size_t v = 0; v < patch.vertices.size(); ++v) {
     if (patch.is_border[v]) {
-      border.emplace(patch.mesh.points_mm[v], patch.vertices[v]);
+      border.add(patch.mesh.points_mm[v], patch.vertices[v]);
     } else {
       free.push_back(patch.vertices[v]);
     }
@@ -164,8 +149,8 @@ std::size_t put_patch(TissueMesh& whole, const MeshPatch& patch, const TissueMes
   std::vector<VertexId> number(changed.points_mm.size());
   for (std::size_t v = 0; v < number.size(); ++v) {
     const Vec3 p = changed.points_mm[v];
-    if (const auto known = border.find(p); known != border.end()) {
-      number[v] = known->second;
+    if (const auto known = border.at(p)) {
+      number[v] = *known;
     } else if (used < free.size()) {
       number[v] = free[used++];
       whole.points_mm[number[v]] = p;

@@ -20,6 +20,7 @@
 #include "lattice/mend_pieces.h"
 #include "lattice/mend_surfaces.h"
 #include "mesh/mesh_editor.h"
+#include "mesh/vertices_by_point.h"
 #include "mesh/voxel_owners.h"
 
 namespace anatomesh {
@@ -91,10 +92,7 @@ class PatchMender {
  public:
   PatchMender(TissueMesh& mesh, const LabelMending& mending)
       : mesh_(mesh), mending_(mending), price_in_voxels_(voxel_price(complex_, mending.image, contents_)) {
-    for (VertexId v = 0; v < mending.border_mm.size(); ++v) {
-      const Vec3& p = mending.border_mm[v];
-      border_.emplace(std::array{p.x, p.y, p.z}, v);
-    }
+    for (VertexId v = 0; v < mending.border_mm.size(); ++v) border_.add(mending.border_mm[v], v);
     for (const auto& contact : mending.rest.contacts) contacts_[contact.vertex].push_back(contact);
   }
 
@@ -138,7 +136,7 @@ class PatchMender {
 
   TissueMesh& mesh_;
   const LabelMending& mending_;
-  std::map<std::array<double, 3>, VertexId> border_;  // places of the border's vertices
+  VerticesByPoint border_;
   std::map<VertexId, std::vector<RestPieces::Contact>> contacts_;
   std::set<std::pair<TissueId, std::uint32_t>> lone_;  // pieces of the rest that touch the patch at vertices only
   TetComplex complex_;
@@ -199,10 +197,9 @@ void PatchMender::join_beyond() {
   std::map<std::pair<TissueId, std::uint32_t>, TetId> first;
   for (VertexId v = 0; v < mesh_.points_mm.size(); ++v) {
     if (!is_border_[v]) continue;
-    const Vec3& p = mesh_.points_mm[v];
-    const auto known = border_.find(std::array{p.x, p.y, p.z});
-    if (known == border_.end()) continue;
-    const auto contacts = contacts_.find(known->second);
+    const auto known = border_.at(mesh_.points_mm[v]);
+    if (!known) continue;
+    const auto contacts = contacts_.find(*known);
     if (contacts == contacts_.end()) continue;
     for (const auto& contact : contacts->second) {
       for (const TetId t : complex_.tets_of_vertex[v]) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <map>
 #include <optional>
 #include <utility>
 
@@ -10,6 +9,7 @@
 #include "base/stage.h"
 #include "base/vec.h"
 #include "image/components.h"
+#include "mesh/vertices_by_point.h"
 #include "pipeline/checks.h"
 #include "pipeline/local_update.h"
 #include "pipeline/meshing.h"
@@ -41,18 +41,17 @@ void check_same_grid(const LabelImage& image, const LabelImage& grid) {
 // The mesh and the background around it as one; where they meet, vertices have the same coordinates.
 TissueMesh joined(const TissueMesh& mesh, const TissueMesh& beyond) {
   TissueMesh all = mesh;
-  std::map<std::array<double, 3>, VertexId> known;
+  VerticesByPoint border;
   const std::vector<char> is_border = border_vertices(mesh);
   for (VertexId v = 0; v < mesh.points_mm.size(); ++v) {
-    const Vec3& p = mesh.points_mm[v];
-    if (is_border[v]) known.emplace(std::array{p.x, p.y, p.z}, v);
+    if (is_border[v]) border.add(mesh.points_mm[v], v);
   }
   std::vector<VertexId> number(beyond.points_mm.size());
   for (std::size_t v = 0; v < number.size(); ++v) {
     const Vec3& p = beyond.points_mm[v];
-    const auto same = known.find(std::array{p.x, p.y, p.z});
-    number[v] = same != known.end() ? same->second : static_cast<VertexId>(all.points_mm.size());
-    if (same == known.end()) all.points_mm.push_back(p);
+    const auto same = border.at(p);
+    number[v] = same ? *same : static_cast<VertexId>(all.points_mm.size());
+    if (!same) all.points_mm.push_back(p);
   }
   for (std::array<VertexId, 4> tet : beyond.tets) {
     for (VertexId& v : tet) v = number[v];
