@@ -466,10 +466,7 @@ void measure_kept(KeptMesh& kept, const TissueImage& image) {
   const std::size_t tissues = image.labels.size();
   kept.area_mm2 = boundary_areas_mm2(image);
   kept.unused_vertices = 0;
-  for (std::size_t a = 0; a < 3; ++a) {
-    kept.box.low[a] = image.first[a];
-    kept.box.high[a] = image.first[a] + image.size[a];
-  }
+  kept.box = box_of(image);
   const std::vector<std::uint32_t> components = ImageComponents(image).count_by_tissue(tissues);
   const RestPieces pieces = find_rest_pieces(kept.mesh, {}, std::vector<char>(tissues, 1));
   kept.pieces_off.assign(tissues, 0);

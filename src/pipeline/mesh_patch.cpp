@@ -30,6 +30,15 @@ void add_ring(const TissueMesh& whole, std::vector<char>& chosen) {
 
 }  // namespace
 
+IndexBox box_of(const TissueImage& image) {
+  IndexBox box;
+  for (std::size_t a = 0; a < 3; ++a) {
+    box.low[a] = image.first[a];
+    box.high[a] = image.first[a] + image.size[a];
+  }
+  return box;
+}
+
 VoxelBlocks::VoxelBlocks(const IndexBox& box) {
   constexpr std::int64_t kRoom = 16;  // blocks, to dilate
   std::size_t count = 1;

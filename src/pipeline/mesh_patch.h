@@ -17,6 +17,9 @@ struct IndexBox {
   bool empty() const { return high[0] <= low[0]; }
 };
 
+/// All voxels of a crop.
+IndexBox box_of(const TissueImage& image);
+
 /// A set of voxels, kept as cubes of a few voxels that hold one.
 class VoxelBlocks {
  public:

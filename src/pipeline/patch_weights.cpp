@@ -28,15 +28,6 @@ void copy_common(const TissueImage& from, const std::vector<std::uint8_t>& value
   }
 }
 
-IndexBox all_of(const TissueImage& image) {
-  IndexBox box;
-  for (std::size_t a = 0; a < 3; ++a) {
-    box.low[a] = image.first[a];
-    box.high[a] = image.first[a] + image.size[a];
-  }
-  return box;
-}
-
 IndexBox grown(IndexBox box, int voxels) {
   for (std::size_t a = 0; a < 3; ++a) {
     box.low[a] -= voxels;
@@ -67,7 +58,7 @@ std::vector<std::uint8_t> part_of(const TissueImage& image, const std::vector<st
   std::vector<std::uint8_t> result(
       static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) * static_cast<std::size_t>(size[2]),
       static_cast<std::uint8_t>(kWeightUnit));
-  copy_common(image, weights, part, result, all_of(part));
+  copy_common(image, weights, part, result, box_of(part));
   return result;
 }
 
