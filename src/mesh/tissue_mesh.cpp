@@ -8,11 +8,22 @@
 
 #include "base/parallel.h"
 #include "base/vec.h"
+#include "mesh/tet_shape.h"
 
 namespace anatomesh {
 
 std::size_t tissue_tets(const TissueMesh& mesh) {
   return mesh.tissues.size() - static_cast<std::size_t>(std::ranges::count(mesh.tissues, TissueId{0}));
+}
+
+std::vector<double> tissue_volumes_mm3(const TissueMesh& mesh, std::size_t tissues) {
+  std::vector<double> volume(tissues, 0);
+  for (TetId t = 0; t < mesh.tets.size(); ++t) {
+    const auto& [a, b, c, d] = mesh.tets[t];
+    volume[mesh.tissues[t]] +=
+        six_volumes(mesh.points_mm[a], mesh.points_mm[b], mesh.points_mm[c], mesh.points_mm[d]) / 6;
+  }
+  return volume;
 }
 
 namespace {

@@ -22,6 +22,9 @@ struct TissueMesh {
 /// Tetrahedra without the cushion's.
 std::size_t tissue_tets(const TissueMesh& mesh);
 
+/// Volume of the tetrahedra of each tissue, the cushion's included. tissues: how many there are, with the background.
+std::vector<double> tissue_volumes_mm3(const TissueMesh& mesh, std::size_t tissues);
+
 /// The same mesh with the tissues' tetrahedra before the cushion's, and their vertices before those of the cushion
 /// alone; otherwise in the same order. The stages rely on it. Vertices of no tetrahedron are dropped.
 TissueMesh with_cushion_last(const TissueMesh& mesh);

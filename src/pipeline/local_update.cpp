@@ -291,16 +291,6 @@ std::vector<Fidelity> LocalUpdate::updated(const std::vector<Fidelity>& all, con
   return result;
 }
 
-std::vector<double> volumes_of(const TissueMesh& mesh, std::size_t tissues) {
-  std::vector<double> volume(tissues, 0);
-  for (TetId t = 0; t < mesh.tets.size(); ++t) {
-    const auto& [a, b, c, d] = mesh.tets[t];
-    volume[mesh.tissues[t]] +=
-        six_volumes(mesh.points_mm[a], mesh.points_mm[b], mesh.points_mm[c], mesh.points_mm[d]) / 6;
-  }
-  return volume;
-}
-
 // The tissues that have less fidelity than asked for, or a volume farther from the image's than may be, and had not
 // before.
 std::vector<char> LocalUpdate::lacking(const KeptMesh& next) const {
@@ -329,7 +319,8 @@ KeptMesh LocalUpdate::measured() const {
   next.fidelity = updated(kept_.fidelity, before.tissues, after.tissues);
   next.inside = updated(kept_.inside, before.inside, after.inside);
   next.volume_mm3 = kept_.volume_mm3;
-  const std::vector<double> gone = volumes_of(patch_.mesh, tissues_), come = volumes_of(mesh_, tissues_);
+  const std::vector<double> gone = tissue_volumes_mm3(patch_.mesh, tissues_),
+                            come = tissue_volumes_mm3(mesh_, tissues_);
   for (std::size_t t = 0; t < tissues_; ++t) next.volume_mm3[t] += come[t] - gone[t];
   next.surface_mm = kept_.surface_mm;
   next.area_mm2 = area_mm2_;
@@ -472,7 +463,7 @@ void measure_kept(KeptMesh& kept, const TissueImage& image) {
   kept.pieces_off.assign(tissues, 0);
   for (std::size_t t = 1; t < tissues; ++t)
     kept.pieces_off[t] = std::abs(static_cast<int>(pieces.closed[t]) - static_cast<int>(components[t]));
-  kept.volume_mm3 = volumes_of(kept.mesh, tissues);
+  kept.volume_mm3 = tissue_volumes_mm3(kept.mesh, tissues);
   kept.surface_mm = surface_edges_mm(kept.mesh, tissues);
 }
 

@@ -9,7 +9,6 @@
 
 #include "base/rotation.h"
 #include "base/vec.h"
-#include "mesh/tet_shape.h"
 
 namespace anatomesh {
 namespace {
@@ -104,12 +103,7 @@ void describe_islands(const std::vector<DroppedIsland>& islands, const TissueIma
 // A tissue thinner than the lattice can lose most of its volume to the deformation: that must not pass unnoticed.
 void describe_shrinkage(const TissueMesh& mesh, const TissueImage& image, std::vector<std::string>& warnings) {
   constexpr double kMuch = 0.5;
-  std::vector<double> volume_mm3(image.labels.size(), 0);
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
-    const auto& v = mesh.tets[t];
-    volume_mm3[mesh.tissues[t]] +=
-        six_volumes(mesh.points_mm[v[0]], mesh.points_mm[v[1]], mesh.points_mm[v[2]], mesh.points_mm[v[3]]) / 6;
-  }
+  const std::vector<double> volume_mm3 = tissue_volumes_mm3(mesh, image.labels.size());
   for (std::size_t t = 1; t < volume_mm3.size(); ++t) {
     const double off = volume_mm3[t] / image.volume_mm3(t) - 1;
     if (volume_mm3[t] == 0 || std::abs(off) <= kMuch) continue;
