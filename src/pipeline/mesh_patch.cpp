@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/disjoint_sets.h"
 #include "base/parallel.h"
 #include "base/vec.h"
 #include "mesh/vertices_by_point.h"
@@ -197,32 +198,26 @@ RestPieces find_rest_pieces(const TissueMesh& whole, const MeshPatch& patch, std
   rest.counted = std::move(counted);
   std::vector<char> is_mine(whole.tets.size(), 0);
   for (const TetId t : patch.tets) is_mine[t] = 1;
-  std::vector<VertexId> parent(whole.points_mm.size());
-  std::vector<char> seen(parent.size()), touches(parent.size());
-  const auto root = [&](VertexId v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
+  std::vector<char> seen(whole.points_mm.size()), touches(seen.size());
   for (std::size_t tissue = 1; tissue < rest.counted.size(); ++tissue) {
     if (!rest.counted[tissue]) continue;
-    for (std::size_t v = 0; v < parent.size(); ++v) parent[v] = static_cast<VertexId>(v);
+    DisjointSets pieces(seen.size());
     std::fill(seen.begin(), seen.end(), char{0});
     std::fill(touches.begin(), touches.end(), char{0});
     for (std::size_t t = 0; t < whole.tets.size(); ++t) {
       if (whole.tissues[t] != tissue || is_mine[t]) continue;
-      const VertexId first = root(whole.tets[t][0]);
       for (const VertexId v : whole.tets[t]) {
         seen[v] = 1;
-        parent[root(v)] = first;
+        pieces.join(v, whole.tets[t][0]);
       }
     }
     for (std::size_t v = 0; v < patch.vertices.size(); ++v) {
       const VertexId w = patch.vertices[v];
       if (!patch.is_border[v] || !seen[w]) continue;
-      touches[root(w)] = 1;
-      rest.contacts.push_back({static_cast<VertexId>(v), static_cast<TissueId>(tissue), root(w)});
+      touches[pieces.root(w)] = 1;
+      rest.contacts.push_back({static_cast<VertexId>(v), static_cast<TissueId>(tissue), pieces.root(w)});
     }
-    for (std::size_t v = 0; v < parent.size(); ++v) rest.closed[tissue] += seen[v] && parent[v] == v && !touches[v];
+    for (VertexId v = 0; v < seen.size(); ++v) rest.closed[tissue] += seen[v] && pieces.is_root(v) && !touches[v];
   }
   return rest;
 }
