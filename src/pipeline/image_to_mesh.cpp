@@ -65,14 +65,20 @@ LatticePlan make_plan(const TissueImage& image, const LatticeOptions& options) {
   LatticePlan plan;
   set_root(plan, image, options.bcc_size_mm, options.min_size_mm);
   plan.allow_non_manifold = options.allow_non_manifold;
-  plan.fidelity.assign(image.labels.size(), options.fidelity);
-  for (const auto& [label, fidelity] : options.fidelity_label) {
-    plan.fidelity[tissue_of(image, label)] = fidelity;
-  }
+  plan.fidelity = wanted_fidelity(options, image.labels);
   return plan;
 }
 
 }  // namespace
+
+std::vector<double> wanted_fidelity(const LatticeOptions& options, const std::vector<Label>& labels) {
+  std::vector<double> wanted(labels.size(), options.fidelity);
+  for (std::size_t t = 0; t < labels.size(); ++t) {
+    const auto own = options.fidelity_label.find(labels[t]);
+    if (own != options.fidelity_label.end()) wanted[t] = own->second;
+  }
+  return wanted;
+}
 
 Meshing mesh_image(const LabelImage& image, const Options& options, bool keeps_background, const Progress& progress) {
   check_options(options);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "anatomesh/image_to_mesh.h"
 #include "image/tissue_image.h"
@@ -14,6 +15,9 @@ struct Meshing {
   TissueImage image;
   DeformedMesh deformed;  ///< in the image's own frame
 };
+
+/// The fidelity asked for, by tissue. labels: those of the image, ascending.
+std::vector<double> wanted_fidelity(const LatticeOptions& options, const std::vector<Label>& labels);
 
 /// image_to_mesh() without the limit of threads. keeps_background: fills in deformed.beyond.
 Meshing mesh_image(const LabelImage& image, const Options& options, bool keeps_background, const Progress& progress);

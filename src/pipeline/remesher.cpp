@@ -188,7 +188,6 @@ class Remesher::Impl {
 
  private:
   void mesh_whole(const LabelImage& image, const Options& options, const Progress& progress);
-  std::vector<double> wanted(const std::vector<Label>& labels) const;
   void take(TissueImage image, const std::vector<Label>& numbered, std::vector<std::string> warnings);
   bool update_here(const LabelImage& changed, UpdateReport& report, const Progress& progress);
 
@@ -215,15 +214,6 @@ void Remesher::Impl::mesh_whole(const LabelImage& image, const Options& options,
   lattice_ = result_.tissues;
 }
 
-std::vector<double> Remesher::Impl::wanted(const std::vector<Label>& labels) const {
-  std::vector<double> wanted(labels.size(), options_.lattice.fidelity);
-  for (std::size_t t = 0; t < labels.size(); ++t) {
-    const auto own = options_.lattice.fidelity_label.find(labels[t]);
-    if (own != options_.lattice.fidelity_label.end()) wanted[t] = own->second;
-  }
-  return wanted;
-}
-
 // The new state of things, after a local update in the numbers of these labels.
 void Remesher::Impl::take(TissueImage image, const std::vector<Label>& numbered, std::vector<std::string> warnings) {
   std::vector<Label> labels = {0};
@@ -240,8 +230,8 @@ void Remesher::Impl::take(TissueImage image, const std::vector<Label>& numbered,
   }
   image_ = std::move(image);
   result_.mesh = in_physical_space(kept_.mesh, image_, grid_, options_.frame);
-  result_.tissues =
-      describe_tissues(image_, wanted(labels), std::vector<Fidelity>(labels.size()), kept_.inside, kept_.mesh);
+  result_.tissues = describe_tissues(image_, wanted_fidelity(options_.lattice, labels),
+                                     std::vector<Fidelity>(labels.size()), kept_.inside, kept_.mesh);
   for (TissueOutcome& tissue : result_.tissues) {
     const auto before = std::ranges::find(lattice_, tissue.label, &TissueOutcome::label);
     if (before == lattice_.end()) continue;
@@ -276,7 +266,7 @@ bool Remesher::Impl::update_here(const LabelImage& changed, UpdateReport& report
   change.weights = updated_weights(before, weights_, after, change.box);
   KeptMesh kept = kept_;
   renumber(kept, before_labels, all);
-  const LocalResult local = update_locally(kept, change, options_, wanted(all), stage);
+  const LocalResult local = update_locally(kept, change, options_, wanted_fidelity(options_.lattice, all), stage);
   report.reason = local.failure;
   if (!local.failure.empty()) return false;
   report.new_tets = local.new_tets;
