@@ -81,7 +81,6 @@ std::vector<double> wanted_fidelity(const LatticeOptions& options, const std::ve
 }
 
 Meshing mesh_image(const LabelImage& image, const Options& options, bool keeps_background, const Progress& progress) {
-  check_options(options);
   check_image(image);
   Meshing made;
   Result& result = made.result;

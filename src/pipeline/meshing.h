@@ -19,7 +19,8 @@ struct Meshing {
 /// The fidelity asked for, by tissue. labels: those of the image, ascending.
 std::vector<double> wanted_fidelity(const LatticeOptions& options, const std::vector<Label>& labels);
 
-/// image_to_mesh() without the limit of threads. keeps_background: fills in deformed.beyond.
+/// image_to_mesh() without the limit of threads, of options that have been checked. keeps_background: fills in
+/// deformed.beyond.
 Meshing mesh_image(const LabelImage& image, const Options& options, bool keeps_background, const Progress& progress);
 
 /// Fills in the tissues, and adds warnings about them, of the result. wanted: F by tissue.
