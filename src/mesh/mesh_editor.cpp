@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <numeric>
 #include <utility>
 
 #include "base/parallel.h"
@@ -57,14 +58,11 @@ bool MeshEditor::lies_on_bare_face(VertexId v) const {
 }
 
 TissueMesh MeshEditor::result() const {
-  TissueMesh living;
-  living.points_mm = mesh_.points_mm;
-  for (TetId t = 0; t < mesh_.tets.size(); ++t) {
-    if (!is_alive(t)) continue;
-    living.tets.push_back(mesh_.tets[t]);
-    living.tissues.push_back(mesh_.tissues[t]);
-  }
-  return with_cushion_last(living);
+  std::vector<VertexId> same(vertex_count());
+  std::iota(same.begin(), same.end(), VertexId{0});
+  TissueMesh all = living(same);
+  all.points_mm = mesh_.points_mm;
+  return with_cushion_last(all);
 }
 
 TissueMesh MeshEditor::living(std::span<const VertexId> numbers) const {
