@@ -6,6 +6,7 @@
 
 #include "base/disjoint_sets.h"
 #include "base/parallel.h"
+#include "base/sort_and_unify.h"
 #include "base/vec.h"
 
 namespace anatomesh::assess_detail {
@@ -78,8 +79,7 @@ void count_at_vertex(VertexId v, const TissueMesh& mesh, const VertexStars& star
       if (w >= v) ends.emplace_back(w, mesh.tissue_of[t]);
     }
   }
-  std::sort(ends.begin(), ends.end());
-  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  sort_and_unify(ends);
   const auto enter = [&](VertexId w, Skeleton& s) {
     if (w == v) {
       ++s.vertices;
@@ -158,8 +158,7 @@ void edges_above(VertexId v, const TissueMesh& mesh, const VertexStars& stars, s
       if (w > v) ends.push_back(w);
     }
   }
-  std::sort(ends.begin(), ends.end());
-  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  sort_and_unify(ends);
 }
 
 std::vector<std::uint64_t> count_components(const TissueMesh& mesh, const Neighbours& neighbours) {

@@ -10,6 +10,7 @@
 #include "assess/facet.h"
 #include "assess/point_grid.h"
 #include "base/parallel.h"
+#include "base/sort_and_unify.h"
 #include "base/vec.h"
 
 namespace anatomesh::assess_detail {
@@ -81,8 +82,7 @@ void mark_on_outer_faces(const TissueMesh& mesh, std::span<const Triangle> outer
   const BoxTree tree(boxes);
   std::vector<VertexId> candidates;
   for (const Triangle& t : outer) candidates.insert(candidates.end(), t.begin(), t.end());
-  std::sort(candidates.begin(), candidates.end());
-  candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
+  sort_and_unify(candidates);
 
   const double reach = tolerance_mm * tolerance_mm;
   parallel_for(candidates.size(), [&](std::size_t i) {

@@ -10,6 +10,7 @@
 #include "assess/statistics.h"
 #include "base/disjoint_sets.h"
 #include "base/parallel.h"
+#include "base/sort_and_unify.h"
 #include "base/vec.h"
 
 namespace anatomesh::assess_detail {
@@ -32,8 +33,7 @@ std::vector<std::uint32_t> number_corners(std::span<const Triangle> surface, std
   std::vector<VertexId> ids;
   ids.reserve(3 * surface.size());
   for (const Triangle& t : surface) ids.insert(ids.end(), t.begin(), t.end());
-  std::sort(ids.begin(), ids.end());
-  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  sort_and_unify(ids);
   vertex_count = ids.size();
   std::vector<std::uint32_t> corners(3 * surface.size());
   parallel_for(surface.size(), [&](std::size_t i) {

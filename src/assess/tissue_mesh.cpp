@@ -6,6 +6,7 @@
 
 #include "anatomesh/errors.h"
 #include "base/parallel.h"
+#include "base/sort_and_unify.h"
 #include "base/vec.h"
 
 namespace anatomesh::assess_detail {
@@ -33,8 +34,7 @@ void check_mesh(const TetMesh& mesh) {
 
 std::vector<Label> union_of(std::vector<Label> labels, const std::vector<Label>& others) {
   labels.insert(labels.end(), others.begin(), others.end());
-  std::sort(labels.begin(), labels.end());
-  labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
+  sort_and_unify(labels);
   if (!labels.empty() && labels.front() == 0) labels.erase(labels.begin());
   return labels;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/sort_and_unify.h"
 #include "base/vec.h"
 #include "boundary/interface_level.h"
 #include "deform/ring_filling.h"
@@ -163,8 +164,7 @@ std::size_t flip_interfaces(MeshEditor& mesh, const SurfaceField& field, const S
         if (w > v && mesh.tissues_at(w) > 1) neighbours.push_back(w);
       }
     }
-    std::ranges::sort(neighbours);
-    neighbours.erase(std::ranges::unique(neighbours).begin(), neighbours.end());
+    sort_and_unify(neighbours);
     for (const VertexId w : neighbours) {
       if (std::max(mesh.changed_at(v), mesh.changed_at(w)) >= since) flips += flipper.visit(v, w);
     }

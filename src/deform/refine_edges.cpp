@@ -5,6 +5,7 @@
 #include <iterator>
 #include <vector>
 
+#include "base/sort_and_unify.h"
 #include "base/vec.h"
 #include "deform/improve_shapes.h"
 #include "deform/split_bridges.h"
@@ -25,11 +26,6 @@ struct Edge {
   }
   bool operator==(const Edge&) const = default;
 };
-
-void sort_and_unify(std::vector<Edge>& edges) {
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-}
 
 bool is_cut(const MeshEditor& mesh, VertexId a, VertexId b) { return mesh.is_outer(a) && mesh.is_outer(b); }
 

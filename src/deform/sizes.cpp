@@ -7,6 +7,7 @@
 #include <queue>
 #include <utility>
 
+#include "base/sort_and_unify.h"
 #include "base/vec.h"
 
 namespace anatomesh {
@@ -52,8 +53,7 @@ std::vector<LongEdge> find_long_edges(const MeshEditor& mesh, const SizeField& s
       if (length2 > size * size) edges.push_back({length2, std::min(tet[i], tet[j]), std::max(tet[i], tet[j])});
     }
   }
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  sort_and_unify(edges);
   return edges;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/sort_and_unify.h"
 #include "base/vec.h"
 #include "boundary/interface_level.h"
 #include "deform/search_directions.h"
@@ -57,8 +58,7 @@ void Slider::gather(VertexId v) {
   star_.gather(v);
   tissues_.clear();
   for (const auto& tet : star_.tets()) tissues_.push_back(tet.tissue);
-  std::ranges::sort(tissues_);
-  tissues_.erase(std::ranges::unique(tissues_).begin(), tissues_.end());
+  sort_and_unify(tissues_);
 }
 
 bool Slider::keeps_faces(Vec3 p) const {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "base/sort_and_unify.h"
 #include "base/vec.h"
 #include "mesh/adjacency.h"
 
@@ -62,8 +63,7 @@ std::vector<Bridge> find_bridges(const TissueMesh& mesh, const Neighbourhood& ne
   });
   std::vector<Bridge> bridges;
   for (const auto& block : blocks) bridges.insert(bridges.end(), block.begin(), block.end());
-  std::sort(bridges.begin(), bridges.end());
-  bridges.erase(std::unique(bridges.begin(), bridges.end()), bridges.end());
+  sort_and_unify(bridges);
   return bridges;
 }
 

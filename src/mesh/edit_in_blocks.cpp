@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "base/sort_and_unify.h"
 #include "base/vec.h"
 
 namespace anatomesh {
@@ -107,8 +108,7 @@ Block::Block(const TissueMesh& whole, const Blocks& blocks, std::size_t b, std::
       if (blocks.of_vertex[v] == kSeam) vertices.push_back(v);
     }
   }
-  std::ranges::sort(vertices);
-  vertices.erase(std::ranges::unique(vertices).begin(), vertices.end());
+  sort_and_unify(vertices);
   const std::size_t seam = vertices.size();
   mesh.tets.reserve(blocks.tets_of(b).size());
   mesh.tissues.reserve(blocks.tets_of(b).size());

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "base/sort_and_unify.h"
 #include "base/vec.h"
 #include "boundary/label_field.h"
 #include "deform/improve.h"
@@ -285,8 +286,7 @@ MendFailure PatchMender::failure() const {
 }
 
 bool PatchMender::refine(std::vector<TetId>& marked, const Stage& stage) {
-  std::sort(marked.begin(), marked.end());
-  marked.erase(std::unique(marked.begin(), marked.end()), marked.end());
+  sort_and_unify(marked);
   // The background is improved like a tissue.
   const auto air = static_cast<TissueId>(mending_.image.labels.size());
   TissueMesh finer = mesh_;
@@ -311,8 +311,7 @@ std::vector<TetId> PatchMender::tets_around(VertexId v, int rings) const {
         more.insert(more.end(), complex_.tets_of_vertex[w].begin(), complex_.tets_of_vertex[w].end());
     }
     tets = std::move(more);
-    std::sort(tets.begin(), tets.end());
-    tets.erase(std::unique(tets.begin(), tets.end()), tets.end());
+    sort_and_unify(tets);
   }
   return tets;
 }
@@ -327,11 +326,9 @@ bool PatchMender::unite(const std::vector<TetId>& group, double max_price) {
     own.push_back(complex_.tissue(t));
     vertices.insert(vertices.end(), complex_.mesh.tets[t].begin(), complex_.mesh.tets[t].end());
   }
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  sort_and_unify(vertices);
   std::vector<TissueId> tissues = own;
-  std::sort(tissues.begin(), tissues.end());
-  tissues.erase(std::unique(tissues.begin(), tissues.end()), tissues.end());
+  sort_and_unify(tissues);
   const auto defects = [&] {
     unsigned sum = 0;
     for (const VertexId v : vertices) sum += star_defect(complex_, v);
