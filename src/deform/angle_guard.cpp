@@ -93,8 +93,6 @@ double AngleGuard::advance_best(VertexId v, Vec3 goal, const Mat3& metric, doubl
   return share;
 }
 
-double AngleGuard::slack(VertexId v, Vec3 p, double enough) const { return star(v).at(p, enough); }
-
 void AngleGuard::make_even(VertexId v, Vec3 mean) const {
   if (is_fixed(v)) return;
   const StarSlack& around = star(v);

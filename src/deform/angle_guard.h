@@ -33,9 +33,6 @@ class AngleGuard {
   /// Returns what advance() does. Neighbours of v must not move at the same time.
   double advance_best(VertexId v, Vec3 goal, const Mat3& metric, double reach) const;
 
-  /// How far the worst tetrahedron at v is from its bounds when v is at p (see StarSlack::at()).
-  double slack(VertexId v, Vec3 p, double enough) const;
-
   /// Moves v to `mean`, or 0.3 of the way, where that does not make the worst of its tetrahedra worse.
   void make_even(VertexId v, Vec3 mean) const;
 
