@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <functional>
@@ -170,6 +171,21 @@ TEST(Remesher, ObliqueLeftHandedAndAnisotropicImages) {
     Remesher mesher(image, options);
     image = painted(image, Ball{24, 36, 24, 7}, 0, tissue);
     mesher.update(image);
+    expect_sound(image, mesher);
+  }
+}
+
+TEST(Remesher, OtherBounds) {
+  for (const auto& [low, high, ratio] : {std::array{10., 160., 0.2}, std::array{24., 140., 0.35}}) {
+    LabelImage image = anatomy();
+    Options options;
+    options.deform.min_dihedral_deg = low;
+    options.deform.max_dihedral_deg = high;
+    options.deform.min_mean_ratio = ratio;
+    Remesher mesher(image, options);
+    image = painted(image, Ball{40, 24, 24, 8}, 0, tissue);
+    const UpdateReport report = mesher.update(image);
+    EXPECT_FALSE(report.whole) << report.reason;
     expect_sound(image, mesher);
   }
 }
