@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "anatomesh/label_table.h"
 #include "anatomesh/types.h"
 
 namespace anatomesh {
@@ -17,6 +18,7 @@ struct LabelImage {
   Vec3 origin_mm;                               ///< centre of voxel (0, 0, 0), LPS
   Mat3 direction = kIdentity3;                  ///< column a: unit vector of index axis a in LPS; orthonormal
   std::vector<Label> voxels;                    ///< size[0]*size[1]*size[2] labels, i fastest
+  LabelTable names = {};                        ///< of the labels, where they are known
 
   Label at(std::size_t i, std::size_t j, std::size_t k) const { return voxels[i + size[0] * (j + size[1] * k)]; }
 };

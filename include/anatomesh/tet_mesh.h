@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "anatomesh/label_table.h"
 #include "anatomesh/types.h"
 
 namespace anatomesh {
@@ -14,6 +15,7 @@ struct TetMesh {
   std::vector<Vec3> points_mm;
   std::vector<std::array<VertexId, 4>> tets;
   std::vector<Label> labels;  ///< one a tetrahedron: its tissue
+  LabelTable names = {};      ///< of the labels, where they are known
 };
 
 }  // namespace anatomesh

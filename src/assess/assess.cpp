@@ -27,10 +27,12 @@ namespace {
 using namespace assess_detail;
 
 void check_image(const LabelImage& image) {
-  const auto& [size, spacing, origin, direction, voxels] = image;
-  if (size[0] * size[1] * size[2] != voxels.size()) throw InvalidInput("the image's size and its voxels disagree");
+  const auto& size = image.size;
+  const Vec3 spacing = image.spacing_mm;
+  if (size[0] * size[1] * size[2] != image.voxels.size())
+    throw InvalidInput("the image's size and its voxels disagree");
   if (!(spacing.x > 0 && spacing.y > 0 && spacing.z > 0)) throw InvalidInput("the image's spacing must be above 0");
-  if (!(std::abs(determinant(direction)) > 1e-3)) throw InvalidInput("the image's axes do not span space");
+  if (!(std::abs(determinant(image.direction)) > 1e-3)) throw InvalidInput("the image's axes do not span space");
 }
 
 /// What is known of the mesh before the tissues are looked at one by one.

@@ -66,6 +66,25 @@ std::vector<Label> labels_of(const std::filesystem::path& path, const CellArrays
   return labels;
 }
 
+/// Empty where the file has none.
+LabelTable names_of(const std::filesystem::path& path, const CellArrays& cells) {
+  const std::size_t count = cells.label_names.size();
+  std::vector<Label> labels(count);
+  if (cells.label_values.size() != count) throw_damaged(path, "its label names are not as many as their values");
+  if (store_labels(cells.label_values.type, cells.label_values.bytes.data(), count, labels.data()))
+    throw_damaged(path, "its label names have values that are no labels");
+  const bool has_colours = cells.label_colours.type == NumberType::u8 && cells.label_colours.size() == 3 * count;
+  LabelTable names;
+  for (std::size_t n = 0; n < count; ++n) {
+    LabelEntry& entry = names[labels[n]];
+    entry.name = cells.label_names[n];
+    if (!has_colours) continue;
+    const auto part = [&](std::size_t c) { return static_cast<std::uint8_t>(cells.label_colours.bytes[3 * n + c]); };
+    entry.colour = Colour{part(0), part(1), part(2)};
+  }
+  return names;
+}
+
 /// Throws unless every cell can be followed to its corners.
 void check_offsets(const std::filesystem::path& path, const CellArrays& cells) {
   if (cells.offsets.size() != cells.types.size() + 1) {
@@ -119,6 +138,7 @@ TetMesh tet_mesh_from(const std::filesystem::path& path, CellArrays cells) {
   }
   if (mesh.tets.empty()) throw InvalidInput(in_quotes(path) + " has no linear tetrahedra");
   mesh.points_mm = std::move(cells.points_mm);
+  mesh.names = names_of(path, cells);
   return mesh;
 }
 

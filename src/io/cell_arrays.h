@@ -25,6 +25,14 @@ struct CellArray {
   NumberArray values;
 };
 
+/// Names of the arrays in VTK's files that hold the label table; one tuple a label.
+struct NameArrays {
+  const char* values = "label_values";
+  const char* names = "label_names";
+  const char* colours = "label_colours";
+};
+inline constexpr NameArrays kNameArrays;
+
 /// What a mesh file holds; nothing of it is checked yet.
 struct CellArrays {
   std::vector<Vec3> points_mm;
@@ -32,6 +40,9 @@ struct CellArrays {
   std::vector<std::int64_t> corners;  ///< ids of points
   std::vector<std::int64_t> types;    ///< VTK's numbers for kinds of cells
   std::vector<CellArray> arrays;      ///< those with one component
+  NumberArray label_values;           ///< of the label table, where there is one
+  std::vector<std::string> label_names;
+  NumberArray label_colours;  ///< red, green, blue for each
 };
 
 /// Takes the linear tetrahedra out, as read_mesh() says. Throws IoError (arrays that do not fit together),

@@ -3,17 +3,15 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include "io/number_text.h"
 #include "io/output_file.h"
+#include "io/text_cursor.h"
 
 namespace anatomesh {
 namespace {
@@ -47,16 +45,10 @@ constexpr std::array<TypeName, 22> kTypeNames = {{{"char", NumberType::i8},
                                                   {"float", NumberType::f32},
                                                   {"double", NumberType::f64}}};
 
-std::string in_letters(std::string_view text, int (*change)(int)) {
-  std::string changed(text);
-  for (char& c : changed) c = static_cast<char>(change(static_cast<unsigned char>(c)));
-  return changed;
-}
-
 /// Reads one file from its start to its end.
 class LegacyReader {
  public:
-  LegacyReader(const std::filesystem::path& path, std::string bytes) : path_(path), bytes_(std::move(bytes)) {}
+  explicit LegacyReader(const std::filesystem::path& path) : text_(path) {}
 
   CellArrays read() {
     read_start();
@@ -67,47 +59,15 @@ class LegacyReader {
  private:
   using Section = void (LegacyReader::*)();
 
-  // ---- the text: words, lines and numbers
+  std::string_view word() { return text_.word(); }
+  std::string upper_word() { return in_capitals(text_.word()); }
+  std::size_t count() { return text_.number<std::uint32_t>(); }
 
-  bool at_space() const { return std::isspace(static_cast<unsigned char>(bytes_[at_])) != 0; }
-
-  /// The next word; empty at the end of the file.
-  std::string_view word() {
-    while (at_ < bytes_.size() && at_space()) ++at_;
-    const std::size_t begin = at_;
-    while (at_ < bytes_.size() && !at_space()) ++at_;
-    return std::string_view(bytes_).substr(begin, at_ - begin);
-  }
-
-  std::string upper_word() { return in_letters(word(), &std::toupper); }
-
-  /// The rest of the present line.
-  std::string_view line() {
-    const std::size_t begin = std::min(at_, bytes_.size());
-    const std::size_t end = std::min(bytes_.find('\n', begin), bytes_.size());
-    at_ = std::min(end + 1, bytes_.size());
-    return std::string_view(bytes_).substr(begin, end - begin);
-  }
-
-  template <typename Number>
-  Number number() {
-    const std::string_view text = word();
-    Number value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) {
-      throw_damaged(
-          path_, text.empty() ? "it ends too early" : in_quotes(text.substr(0, 40)) + " stands where a number should");
-    }
-    return value;
-  }
-
-  std::size_t count() { return number<std::uint32_t>(); }
-
-  NumberType number_type() {
-    const std::string name = in_letters(word(), &std::tolower);
+  NumberType number_type() { return number_type(in_small_letters(word())); }
+  NumberType number_type(const std::string& name) {
     const auto found =
         std::find_if(kTypeNames.begin(), kTypeNames.end(), [&](const TypeName& known) { return known.name == name; });
-    if (found == kTypeNames.end()) throw_damaged(path_, in_quotes(name.substr(0, 40)) + " is no known type of numbers");
+    if (found == kTypeNames.end()) text_.fail(in_quotes(name.substr(0, 40)) + " is no known type of numbers");
     return found->type;
   }
 
@@ -117,8 +77,8 @@ class LegacyReader {
     NumberArray result{type, {}};
     // Before memory is reserved for it: a number takes its bytes, or at least a digit and a space.
     const std::size_t least_bytes = is_binary_ ? bytes_of(type) : 2;
-    if (is_binary_) line();
-    if (size > (bytes_.size() - at_ + 1) / least_bytes) throw_damaged(path_, "it ends too early");
+    if (is_binary_) text_.line();
+    if (size > (text_.bytes_left() + 1) / least_bytes) text_.fail("it ends too early");
     result.bytes.resize(size * bytes_of(type));
     is_binary_ ? take_binary(result) : take_ascii(result);
     return result;
@@ -127,9 +87,8 @@ class LegacyReader {
   /// Binary numbers are stored big end first.
   void take_binary(NumberArray& to) {
     const std::size_t each = bytes_of(to.type);
-    if (to.bytes.size() > bytes_.size() - at_) throw_damaged(path_, "it ends too early");
-    std::memcpy(to.bytes.data(), bytes_.data() + at_, to.bytes.size());
-    at_ += to.bytes.size();
+    const std::string_view stored = text_.take(to.bytes.size());
+    std::memcpy(to.bytes.data(), stored.data(), stored.size());
     for (auto value = to.bytes.begin(); value != to.bytes.end(); value += static_cast<std::ptrdiff_t>(each)) {
       std::reverse(value, value + static_cast<std::ptrdiff_t>(each));
     }
@@ -138,7 +97,7 @@ class LegacyReader {
   void take_ascii(NumberArray& to) {
     for_type(to.type, [&]<typename Value>(Value) {
       for (std::size_t n = 0; n < to.bytes.size() / sizeof(Value); ++n) {
-        const Value value = number<Value>();
+        const auto value = text_.number<Value>();
         std::memcpy(to.bytes.data() + n * sizeof(Value), &value, sizeof(Value));
       }
     });
@@ -158,17 +117,16 @@ class LegacyReader {
   // ---- sections
 
   void read_start() {
-    const std::string_view first = line();
+    const std::string_view first = text_.line();
     constexpr std::string_view kStart = "# vtk DataFile Version ";
-    if (first.substr(0, kStart.size()) != kStart)
-      throw_damaged(path_, "it does not begin with '# vtk DataFile Version'");
+    if (first.substr(0, kStart.size()) != kStart) text_.fail("it does not begin with '# vtk DataFile Version'");
     is_version_5_ = first.size() > kStart.size() && first[kStart.size()] >= '5';
-    line();  // the title
+    text_.line();  // the title
     const std::string encoding = upper_word();
-    if (encoding != "ASCII" && encoding != "BINARY") throw_damaged(path_, "its third line is neither ASCII nor BINARY");
+    if (encoding != "ASCII" && encoding != "BINARY") text_.fail("its third line is neither ASCII nor BINARY");
     is_binary_ = encoding == "BINARY";
     if (upper_word() != "DATASET" || upper_word() != "UNSTRUCTURED_GRID") {
-      throw_damaged(path_, "it holds no unstructured grid");
+      text_.fail("it holds no unstructured grid");
     }
   }
 
@@ -197,7 +155,7 @@ class LegacyReader {
                                                          {"TEXTURE_COORDINATES", &LegacyReader::texture}}};
     const auto found =
         std::find_if(kSections.begin(), kSections.end(), [&](const Named& section) { return section.name == name; });
-    if (found == kSections.end()) throw_damaged(path_, in_quotes(name.substr(0, 40)) + " is no known section");
+    if (found == kSections.end()) text_.fail(in_quotes(name.substr(0, 40)) + " is no known section");
     (this->*found->read)();
   }
 
@@ -216,9 +174,9 @@ class LegacyReader {
   void cells() {
     const std::size_t first = count(), second = count();
     if (is_version_5_) {
-      if (upper_word() != "OFFSETS") throw_damaged(path_, "its cells have no offsets");
+      if (upper_word() != "OFFSETS") text_.fail("its cells have no offsets");
       cells_.offsets = integers(array(number_type(), first));
-      if (upper_word() != "CONNECTIVITY") throw_damaged(path_, "its cells have no connectivity");
+      if (upper_word() != "CONNECTIVITY") text_.fail("its cells have no connectivity");
       cells_.corners = integers(array(number_type(), second));
       return;
     }
@@ -227,14 +185,14 @@ class LegacyReader {
     for (std::size_t at = 0; at < list.size();) {
       const std::int64_t corners = list[at++];
       if (corners < 0 || static_cast<std::size_t>(corners) > list.size() - at) {
-        throw_damaged(path_, "a cell has " + number_text(corners) + " corners");
+        text_.fail("a cell has " + number_text(corners) + " corners");
       }
       const auto begin = list.begin() + static_cast<std::ptrdiff_t>(at);
       cells_.corners.insert(cells_.corners.end(), begin, begin + corners);
       cells_.offsets.push_back(static_cast<std::int64_t>(cells_.corners.size()));
       at += static_cast<std::size_t>(corners);
     }
-    if (cells_.offsets.size() != first + 1) throw_damaged(path_, "its cells are not as many as it declares");
+    if (cells_.offsets.size() != first + 1) text_.fail("its cells are not as many as it declares");
   }
 
   void cell_types() { cells_.types = integers(array(NumberType::i32, count())); }
@@ -248,16 +206,21 @@ class LegacyReader {
   }
 
   void keep(std::string_view name, std::size_t components, NumberArray values) {
-    if (is_cell_data_ && components == 1) cells_.arrays.push_back({decoded(name), std::move(values)});
+    if (name == kNameArrays.values)
+      cells_.label_values = std::move(values);
+    else if (name == kNameArrays.colours)
+      cells_.label_colours = std::move(values);
+    else if (is_cell_data_ && components == 1)
+      cells_.arrays.push_back({decoded(name), std::move(values)});
   }
 
   void scalars() {
     const std::string name(word());
     const NumberType type = number_type();
-    const std::string_view rest = line();
+    const std::string_view rest = text_.line();
     const bool has_components = rest.find_first_of("123456789") != std::string_view::npos;
     const auto components = has_components ? static_cast<std::size_t>(rest[rest.find_first_of("123456789")] - '0') : 1;
-    if (upper_word() != "LOOKUP_TABLE" || word().empty()) throw_damaged(path_, "its scalars have no lookup table");
+    if (upper_word() != "LOOKUP_TABLE" || word().empty()) text_.fail("its scalars have no lookup table");
     keep(name, components, array(type, components * data_size_));
   }
 
@@ -287,19 +250,46 @@ class LegacyReader {
     word();
     for (std::size_t left = count(); left > 0; --left) {
       std::string name(word());
-      while (in_letters(name, &std::toupper) == "METADATA") {
+      while (in_capitals(name) == "METADATA") {
         metadata();
         name = word();
       }
       const std::size_t components = count(), tuples = count();
-      keep(name, components, array(number_type(), components * tuples));
+      const std::string type = in_small_letters(word());
+      if (type == "string") {
+        keep_strings(name, strings(components * tuples));
+      } else {
+        keep(name, components, array(number_type(type), components * tuples));
+      }
     }
+  }
+
+  std::vector<std::string> strings(std::size_t size) {
+    text_.line();
+    if (size > text_.bytes_left()) text_.fail("it ends too early");
+    std::vector<std::string> result(size);
+    for (std::string& text : result)
+      text = is_binary_ ? std::string(text_.take(binary_length())) : decoded(text_.line());
+    return result;
+  }
+
+  /// The first two bits say in how many bytes, big end first, the length of a string is stored.
+  std::size_t binary_length() {
+    const auto byte = [&] { return static_cast<std::size_t>(static_cast<unsigned char>(text_.take(1)[0])); };
+    const std::size_t first = byte(), more = std::size_t{8} >> (first >> 6u);
+    std::size_t length = first & 0x3Fu;
+    for (std::size_t n = 1; n < more; ++n) length = length << 8u | byte();
+    return length;
+  }
+
+  void keep_strings(std::string_view name, std::vector<std::string> values) {
+    if (name == kNameArrays.names) cells_.label_names = std::move(values);
   }
 
   /// Names and ranges of components, up to an empty line.
   void metadata() {
-    line();
-    while (at_ < bytes_.size() && !line().empty()) continue;
+    text_.line();
+    while (!text_.at_end() && !text_.line().empty()) continue;
   }
 
   // ---- conversions
@@ -353,9 +343,7 @@ class LegacyReader {
     return result;
   }
 
-  const std::filesystem::path& path_;
-  std::string bytes_;
-  std::size_t at_ = 0;
+  TextCursor text_;
   bool is_binary_ = false;
   bool is_version_5_ = false;
   bool is_cell_data_ = false;
@@ -365,9 +353,6 @@ class LegacyReader {
 
 }  // namespace
 
-CellArrays read_legacy_vtk(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return LegacyReader(path, {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()}).read();
-}
+CellArrays legacy_vtk_cells(const std::filesystem::path& path) { return LegacyReader(path).read(); }
 
 }  // namespace anatomesh

@@ -8,6 +8,6 @@
 namespace anatomesh {
 
 /// Reads an unstructured grid of any version up to 5.1, ASCII or binary. Throws IoError.
-CellArrays read_legacy_vtk(const std::filesystem::path& path);
+CellArrays legacy_vtk_cells(const std::filesystem::path& path);
 
 }  // namespace anatomesh

@@ -3,8 +3,10 @@
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
+#include <vtkFieldData.h>
 #include <vtkNew.h>
 #include <vtkPoints.h>
+#include <vtkStringArray.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLUnstructuredGridReader.h>
@@ -65,6 +67,15 @@ std::vector<std::int64_t> integers_of(vtkDataArray& array) {
   return result;
 }
 
+void take_names(vtkFieldData& data, CellArrays& to) {
+  vtkDataArray* const values = data.GetArray(kNameArrays.values);
+  auto* const names = vtkStringArray::SafeDownCast(data.GetAbstractArray(kNameArrays.names));
+  if (values == nullptr || names == nullptr) return;
+  to.label_values = numbers_of(*values);
+  for (vtkIdType n = 0; n < names->GetNumberOfValues(); ++n) to.label_names.push_back(names->GetValue(n));
+  if (vtkDataArray* const colours = data.GetArray(kNameArrays.colours)) to.label_colours = numbers_of(*colours);
+}
+
 CellArrays arrays_of(vtkUnstructuredGrid& grid) {
   CellArrays result;
   result.points_mm.resize(static_cast<std::size_t>(grid.GetNumberOfPoints()));
@@ -84,12 +95,13 @@ CellArrays arrays_of(vtkUnstructuredGrid& grid) {
     if (array == nullptr || array->GetNumberOfComponents() != 1) continue;
     result.arrays.push_back({array->GetName() != nullptr ? array->GetName() : "", numbers_of(*array)});
   }
+  take_names(*grid.GetFieldData(), result);
   return result;
 }
 
 }  // namespace
 
-CellArrays read_vtu(const std::filesystem::path& path) {
+CellArrays vtu_cells(const std::filesystem::path& path) {
   const VtkSession vtk_session;
   vtkNew<vtkXMLUnstructuredGridReader> reader;
   if (reader->CanReadFile(path.c_str()) == 0) throw_damaged(path, "it is no unstructured grid in VTK's XML format");

@@ -8,6 +8,6 @@
 namespace anatomesh {
 
 /// Reads an unstructured grid through VTK. Throws IoError.
-CellArrays read_vtu(const std::filesystem::path& path);
+CellArrays vtu_cells(const std::filesystem::path& path);
 
 }  // namespace anatomesh

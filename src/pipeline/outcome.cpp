@@ -52,6 +52,10 @@ TetMesh in_physical_space(const TissueMesh& mesh, const TissueImage& tissues, co
     result.tets.push_back(tet);
     result.labels.push_back(tissues.labels[mesh.tissues[t]]);
   }
+  for (const Label label : tissues.labels) {
+    const auto entry = image.names.find(label);
+    if (label != 0 && entry != image.names.end()) result.names.insert(*entry);
+  }
   return result;
 }
 

@@ -24,7 +24,7 @@ constexpr double kLocalShare = 0.2;
 
 // Everything but the voxels.
 LabelImage grid_of(const LabelImage& image) {
-  return {image.size, image.spacing_mm, image.origin_mm, image.direction, {}};
+  return {image.size, image.spacing_mm, image.origin_mm, image.direction, {}, image.names};
 }
 
 void check_same_grid(const LabelImage& image, const LabelImage& grid) {

@@ -65,6 +65,7 @@ void expect_same(const TetMesh& actual, const TetMesh& expected) {
   EXPECT_EQ(actual.points_mm, expected.points_mm);
   EXPECT_EQ(actual.tets, expected.tets);
   EXPECT_EQ(actual.labels, expected.labels);
+  EXPECT_EQ(actual.names, expected.names);
 }
 
 TEST_F(MeshFile, RoundTripsExactly) {
@@ -74,6 +75,29 @@ TEST_F(MeshFile, RoundTripsExactly) {
       write_mesh(file, mesh);
       expect_same(read_mesh(file), mesh);
     }
+  }
+}
+
+/// Names of all lengths that a format may store in its own way, and some that a parser may stumble over.
+TetMesh named_tets() {
+  TetMesh mesh = two_tets();
+  mesh.names[1] = {"Left \"ventricle\" <3 & co", Colour{255, 0, 17}};
+  mesh.names[4294967295U] = {"Große Vene", Colour{1, 2, 3}};
+  mesh.names[2] = {std::string(63, 'a'), Colour{}};
+  mesh.names[3] = {std::string(64, 'b'), Colour{}};
+  mesh.names[4] = {std::string(20000, 'c'), Colour{}};
+  return mesh;
+}
+
+TEST_F(MeshFile, NamesRoundTrip) {
+  for (const char* extension : {".vtu", ".vtk"}) {
+    const auto file = in_folder(std::string("mesh") + extension);
+    TetMesh mesh = named_tets();
+    write_mesh(file, mesh);
+    expect_same(read_mesh(file), mesh);
+    for (auto& [label, entry] : mesh.names) entry.colour.reset();
+    write_mesh(file, mesh);
+    expect_same(read_mesh(file), mesh);
   }
 }
 

@@ -101,9 +101,10 @@ std::size_t voxels_in_several_tets(const LabelImage& image, const Result& result
 }
 
 void expect_valid(const LabelImage& image, const Result& result) {
-  const auto& [points, tets, labels] = result.mesh;
+  const std::vector<Vec3>& points = result.mesh.points_mm;
+  const auto& tets = result.mesh.tets;
   ASSERT_FALSE(tets.empty());
-  ASSERT_EQ(labels.size(), tets.size());
+  ASSERT_EQ(result.mesh.labels.size(), tets.size());
   EXPECT_GT(smallest_volume(points, tets), 0);
   EXPECT_EQ(crowded_faces(points, tets), 0u);
   EXPECT_EQ(vertices_inside_outer_faces(points, tets), 0u);

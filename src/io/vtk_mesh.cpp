@@ -1,26 +1,30 @@
+#include "io/vtk_mesh.h"
+
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkCellType.h>
 #include <vtkDoubleArray.h>
+#include <vtkFieldData.h>
 #include <vtkNew.h>
 #include <vtkPoints.h>
+#include <vtkStringArray.h>
 #include <vtkTypeInt32Array.h>
 #include <vtkTypeInt64Array.h>
+#include <vtkUnsignedCharArray.h>
 #include <vtkUnsignedIntArray.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkUnstructuredGridWriter.h>
 #include <vtkXMLUnstructuredGridWriter.h>
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <string>
 
 #include "anatomesh/errors.h"
-#include "anatomesh/io.h"
-#include "io/number_text.h"
+#include "io/legacy_vtk.h"
 #include "io/output_file.h"
 #include "io/vtk_session.h"
+#include "io/vtu_cells.h"
 
 namespace anatomesh {
 namespace {
@@ -56,6 +60,26 @@ vtkSmartPointer<vtkCellArray> vtk_cells(const TetMesh& mesh) {
   return cells;
 }
 
+/// The label table as field data: see vtk_mesh.h.
+void add_names(vtkUnstructuredGrid& grid, const LabelTable& names) {
+  if (names.empty()) return;
+  vtkNew<vtkUnsignedIntArray> values;
+  vtkNew<vtkStringArray> texts;
+  vtkNew<vtkUnsignedCharArray> colours;
+  values->SetName(kNameArrays.values);
+  texts->SetName(kNameArrays.names);
+  colours->SetName(kNameArrays.colours);
+  colours->SetNumberOfComponents(3);
+  for (const auto& [label, entry] : names) {
+    values->InsertNextValue(label);
+    texts->InsertNextValue(entry.name);
+    if (entry.colour) colours->InsertNextTypedTuple(entry.colour->data());
+  }
+  grid.GetFieldData()->AddArray(values);
+  grid.GetFieldData()->AddArray(texts);
+  if (colours->GetNumberOfTuples() == values->GetNumberOfTuples()) grid.GetFieldData()->AddArray(colours);
+}
+
 vtkSmartPointer<vtkUnstructuredGrid> vtk_grid(const TetMesh& mesh) {
   auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
   grid->SetPoints(vtk_points(mesh));
@@ -67,6 +91,7 @@ vtkSmartPointer<vtkUnstructuredGrid> vtk_grid(const TetMesh& mesh) {
   labels->SetNumberOfValues(static_cast<vtkIdType>(mesh.labels.size()));
   std::copy(mesh.labels.begin(), mesh.labels.end(), labels->GetPointer(0));
   grid->GetCellData()->SetScalars(labels);
+  add_names(*grid, mesh.names);
   return grid;
 }
 
@@ -94,52 +119,22 @@ std::string vtk_bytes(vtkUnstructuredGrid* grid) {
   return writer->Write() == 1 ? writer->GetOutputStdString() : std::string();
 }
 
-/// A mesh format that can be written.
-struct MeshFormat {
-  const char* extension;
-  std::string (*bytes)(vtkUnstructuredGrid* grid);  ///< the whole file, empty on failure
-};
-
-constexpr std::array<MeshFormat, 2> kMeshFormats = {{{".vtu", &vtu_bytes}, {".vtk", &vtk_bytes}}};
-
-const MeshFormat& format_for(const std::filesystem::path& path) {
-  const std::string extension = file_extension(path);
-  const auto found = std::find_if(kMeshFormats.begin(), kMeshFormats.end(),
-                                  [&](const MeshFormat& format) { return extension == format.extension; });
-  if (found != kMeshFormats.end()) return *found;
-  std::string known;
-  for (const MeshFormat& format : kMeshFormats) known += (known.empty() ? "" : " or ") + std::string(format.extension);
-  throw InvalidInput("cannot write the mesh " + in_quotes(path) + ": the extension must be " + known);
-}
-
-}  // namespace
-
-std::vector<std::string> mesh_extensions() {
-  std::vector<std::string> extensions;
-  extensions.reserve(kMeshFormats.size());
-  for (const MeshFormat& format : kMeshFormats) extensions.emplace_back(format.extension);
-  return extensions;
-}
-
-void check_mesh_writable(const std::filesystem::path& path) {
-  format_for(path);
-  check_writable(path);
-}
-
-void write_mesh(const std::filesystem::path& path, const TetMesh& mesh) {
-  const MeshFormat& format = format_for(path);
-  check_writable(path);
-  if (mesh.labels.size() != mesh.tets.size()) {
-    throw InvalidInput("cannot write the mesh " + in_quotes(path) + ": it has " + number_text(mesh.labels.size()) +
-                       " labels for " + number_text(mesh.tets.size()) + " tetrahedra; one for each is needed");
-  }
+void write_grid(const std::filesystem::path& path, const TetMesh& mesh, std::string (*bytes_of)(vtkUnstructuredGrid*)) {
   std::string bytes;
   {
     const VtkSession vtk_session;
-    bytes = format.bytes(vtk_grid(mesh));
+    bytes = bytes_of(vtk_grid(mesh));
     if (bytes.empty()) throw IoError("cannot write " + in_quotes(path) + ": " + vtk_session.first_error());
   }
   write_whole_file(path, bytes);
 }
+
+}  // namespace
+
+void write_vtu(const std::filesystem::path& path, const TetMesh& mesh) { write_grid(path, mesh, &vtu_bytes); }
+void write_legacy_vtk(const std::filesystem::path& path, const TetMesh& mesh) { write_grid(path, mesh, &vtk_bytes); }
+
+TetMesh read_vtu(const std::filesystem::path& path) { return tet_mesh_from(path, vtu_cells(path)); }
+TetMesh read_legacy_vtk(const std::filesystem::path& path) { return tet_mesh_from(path, legacy_vtk_cells(path)); }
 
 }  // namespace anatomesh
