@@ -63,6 +63,12 @@ void write_mesh(const std::filesystem::path& path, const TetMesh& mesh) {
     throw InvalidInput("cannot write the mesh " + in_quotes(path) + ": it has " + number_text(mesh.labels.size()) +
                        " labels for " + number_text(mesh.tets.size()) + " tetrahedra; one for each is needed");
   }
+  const auto largest = std::ranges::max_element(mesh.labels);
+  if (largest != mesh.labels.end() && *largest > format.largest_label) {
+    throw InvalidInput("cannot write the mesh " + in_quotes(path) + ": it has the label " + number_text(*largest) +
+                       ", and " + std::string(format.name) + " holds labels up to " +
+                       number_text(format.largest_label) + "; take another format");
+  }
   format.write(path, mesh);
 }
 

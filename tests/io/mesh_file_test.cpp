@@ -1,10 +1,12 @@
 #include <cstdint>
+#include <limits>
 #include <random>
 #include <string>
 
 #include "anatomesh/errors.h"
 #include "anatomesh/io.h"
 #include "io/io_fixture.h"
+#include "io/mesh_format.h"
 
 namespace anatomesh::testing {
 namespace {
@@ -29,7 +31,7 @@ TetMesh many_tets(std::size_t count) {
   const auto vertex = [&] { return static_cast<VertexId>(random() % mesh.points_mm.size()); };
   for (std::size_t n = 0; n < count; ++n) {
     mesh.tets.push_back({vertex(), vertex(), vertex(), vertex()});
-    mesh.labels.push_back(static_cast<Label>(random()));
+    mesh.labels.push_back(static_cast<Label>(random() % 200 * 21474836 + 1));
   }
   return mesh;
 }
@@ -68,13 +70,34 @@ void expect_same(const TetMesh& actual, const TetMesh& expected) {
   EXPECT_EQ(actual.names, expected.names);
 }
 
+/// As far as the format can hold them.
+TetMesh with_labels_for(const MeshFormat& format, TetMesh mesh) {
+  for (Label& label : mesh.labels) label = std::min(label, format.largest_label);
+  return mesh;
+}
+
 TEST_F(MeshFile, RoundTripsExactly) {
-  for (const std::string& extension : mesh_extensions()) {
-    for (const TetMesh& mesh : {two_tets(), many_tets(100000)}) {
-      const auto file = in_folder("mesh" + extension);
+  for (const MeshFormat& format : mesh_formats()) {
+    if (format.read == nullptr) continue;
+    SCOPED_TRACE(format.extension);
+    for (const TetMesh& any : {two_tets(), many_tets(100000)}) {
+      const TetMesh mesh = with_labels_for(format, any);
+      const auto file = in_folder(std::string("mesh").append(format.extension));
       write_mesh(file, mesh);
       expect_same(read_mesh(file), mesh);
     }
+  }
+}
+
+TEST_F(MeshFile, LabelsThatDoNotFitAreRefused) {
+  for (const MeshFormat& format : mesh_formats()) {
+    if (format.largest_label == std::numeric_limits<Label>::max()) continue;
+    TetMesh mesh = two_tets();
+    mesh.labels.back() = format.largest_label + 1;
+    const auto file = in_folder(std::string("mesh").append(format.extension));
+    const std::string message = message_of<InvalidInput>(file, [&] { write_mesh(file, mesh); });
+    EXPECT_NE(message.find(std::to_string(mesh.labels.back())), std::string::npos) << message;
+    EXPECT_FALSE(std::filesystem::exists(file));
   }
 }
 
@@ -90,6 +113,21 @@ TetMesh named_tets() {
 }
 
 TEST_F(MeshFile, NamesRoundTrip) {
+  for (const MeshFormat& format : mesh_formats()) {
+    if (format.read == nullptr || !format.keeps_names) continue;
+    SCOPED_TRACE(format.extension);
+    const auto file = in_folder(std::string("mesh").append(format.extension));
+    TetMesh mesh = with_labels_for(format, two_tets());
+    mesh.names[mesh.labels[0]] = {"Left ventricle", Colour{255, 0, 17}};
+    mesh.names[mesh.labels[1]] = {"Grosse_Vene", Colour{1, 2, 3}};
+    write_mesh(file, mesh);
+    const TetMesh read = read_mesh(file);
+    for (const Label label : mesh.labels) EXPECT_EQ(read.names.at(label).name, mesh.names.at(label).name);
+  }
+}
+
+// VTK's own formats keep all of the table.
+TEST_F(MeshFile, LabelTableRoundTrips) {
   for (const char* extension : {".vtu", ".vtk"}) {
     const auto file = in_folder(std::string("mesh") + extension);
     TetMesh mesh = named_tets();
