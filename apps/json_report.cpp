@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "anatomesh/version.h"
+
 namespace anatomesh {
 
 using Json = nlohmann::ordered_json;  // NaN becomes null in it
@@ -200,7 +202,7 @@ void to_json(Json& json, const LabelImage& v) {
 namespace apps {
 namespace {
 
-Json program() { return {{"name", "anatomesh"}, {"version", ANATOMESH_VERSION}}; }
+Json program() { return {{"name", "anatomesh"}, {"version", version()}}; }
 
 /// Text of a document; file names that are not UTF-8 lose their odd bytes rather than the report.
 std::string text_of(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }

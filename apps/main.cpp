@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "anatomesh/errors.h"
+#include "anatomesh/version.h"
 #include "apps/check_command.h"
 #include "apps/command.h"
 #include "apps/convert_command.h"
@@ -79,7 +80,7 @@ int report_parse_error(const CLI::App& program, const CLI::ParseError& error) {
 int main_of_program(int argc, char** argv) {
   const Interrupt interrupt;
   CLI::App program("Makes multi-tissue tetrahedral meshes of segmented medical images.", "anatomesh");
-  program.set_version_flag("--version", "anatomesh " ANATOMESH_VERSION);
+  program.set_version_flag("--version", std::string("anatomesh ") + version());
   program.require_subcommand(1);
   const std::vector<Command> commands = add_commands(program);
   try {

@@ -1,4 +1,6 @@
 # Build settings shared by every target, and one function a kind of target.
+include(GNUInstallDirs)
+
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
@@ -36,6 +38,26 @@ function(anatomesh_add_floor name)
     "${PROJECT_SOURCE_DIR}/include" "${PROJECT_SOURCE_DIR}/src")
   target_link_libraries(anatomesh_${name} PUBLIC ${A_DEPENDS}
     PRIVATE anatomesh_settings ${A_PRIVATE_DEPENDS})
+endfunction()
+
+# anatomesh_add_library(TARGET NAME FLOORS ... LINKS ... PRIVATE_LINKS ...)
+# A shared library for others, made of the objects of floors, which stay static within the build.
+function(anatomesh_add_library target name)
+  cmake_parse_arguments(A "" "" "FLOORS;LINKS;PRIVATE_LINKS" ${ARGN})
+  set(objects)
+  foreach(floor IN LISTS A_FLOORS)
+    list(APPEND objects $<TARGET_OBJECTS:anatomesh_${floor}>)
+  endforeach()
+  add_library(${target} SHARED ${objects})
+  set_target_properties(${target} PROPERTIES
+    OUTPUT_NAME ${name} VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
+    LINKER_LANGUAGE CXX)
+  target_include_directories(${target} PUBLIC $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  target_link_libraries(${target} PUBLIC ${A_LINKS} PRIVATE ${A_PRIVATE_LINKS})
+  if(ANATOMESH_SANITIZE)
+    target_link_options(${target} PRIVATE -fsanitize=${ANATOMESH_SANITIZE})
+  endif()
 endfunction()
 
 # anatomesh_add_test(NAME SOURCES ... DEPENDS ... [TIMEOUT seconds])
