@@ -22,6 +22,7 @@ function(anatomesh_install_library target exported component description require
 endfunction()
 
 anatomesh_install_library(anatomesh_mesher mesher mesher "Segmented medical images to tetrahedral meshes" "")
+add_library(anatomesh::mesher ALIAS anatomesh_mesher)  # as for those who find the installed one
 set(headers_left_out)
 if(ANATOMESH_BUILD_IO)
   anatomesh_install_library(anatomesh_files io files "Image and mesh files of Anatomesh" "anatomesh")
