@@ -10,44 +10,92 @@ namespace anatomesh {
 
 void LabelledLeaves::collect(NewLabels new_labels) {
   const std::vector<LabelledLeaf> old = std::exchange(leaves_, {});
-  Places places(static_cast<std::size_t>(lattice_.max_level()) + 1);
-  for (int level = 0; !old.empty() && level <= lattice_.max_level(); ++level)
-    places[static_cast<std::size_t>(level)].assign(lattice_.slot_count(level), kNone);
-  parallel_for(old.size(), [&](std::size_t i) {
-    places[static_cast<std::size_t>(old[i].tet.level)][old[i].tet.slot] = static_cast<std::uint32_t>(i);
-  });
   const std::vector<TetRef> tets = lattice_.leaves();
   leaves_.resize(tets.size());
-  parallel_for(tets.size(), [&](std::size_t i) {
-    leaves_[i].tet = tets[i];
-    leaves_[i].split_edges = static_cast<std::uint8_t>(lattice_.split_edges(tets[i]));
-    label(leaves_[i], old, places, new_labels);
+  parallel_for(tets.size(), [&](std::size_t i) { leaves_[i] = labelled(tets[i], old, new_labels); });
+  places_.clear();
+  note_places(0);
+}
+
+std::vector<std::uint32_t> LabelledLeaves::replace(std::span<const TetRef> refined, std::span<const TetRef> renewed) {
+  std::vector<std::uint32_t> touched = touched_places(refined, renewed);
+  const std::size_t first = leaves_.size();
+  for (const TetRef t : refined) {
+    for (const TetRef child : lattice_.children(t)) {
+      if (!lattice_.is_leaf(child)) continue;
+      touched.push_back(static_cast<std::uint32_t>(leaves_.size()));
+      leaves_.emplace_back().tet = child;
+    }
+  }
+  std::vector<LabelledLeaf> made(touched.size());
+  parallel_for(made.size(), [&](std::size_t i) {
+    made[i] = leaves_[touched[i]];
+    made[i].gone = !lattice_.is_leaf(made[i].tet);
+    if (!made[i].gone) made[i] = labelled(made[i].tet, leaves_, NewLabels::inherit);
+  });
+  for (std::size_t i = 0; i < touched.size(); ++i) leaves_[touched[i]] = made[i];
+  note_places(first);
+  return touched;
+}
+
+// Of the leaves that are gone or may have changed, in ascending order.
+std::vector<std::uint32_t> LabelledLeaves::touched_places(std::span<const TetRef> refined,
+                                                          std::span<const TetRef> renewed) const {
+  std::vector<std::uint32_t> touched;
+  for (const std::span<const TetRef> tets : {refined, std::span<const TetRef>(lattice_.resplit()), renewed}) {
+    for (const TetRef t : tets) {
+      const std::uint32_t at = place_of(t);
+      if (at != kNone && !leaves_[at].gone) touched.push_back(at);
+    }
+  }
+  std::ranges::sort(touched);
+  const auto repeated = std::ranges::unique(touched);
+  touched.erase(repeated.begin(), repeated.end());
+  return touched;
+}
+
+// Where a leaf is, or was, in the list; kNone for what has never been in it.
+std::uint32_t LabelledLeaves::place_of(TetRef t) const {
+  const auto level = static_cast<std::size_t>(t.level);
+  return level < places_.size() && t.slot < places_[level].size() ? places_[level][t.slot] : kNone;
+}
+
+// Of the leaves from the first on.
+void LabelledLeaves::note_places(std::size_t first) {
+  places_.resize(static_cast<std::size_t>(lattice_.max_level()) + 1);
+  for (int level = 0; level <= lattice_.max_level(); ++level)
+    places_[static_cast<std::size_t>(level)].resize(lattice_.slot_count(level), kNone);
+  parallel_for(leaves_.size() - first, [&](std::size_t i) {
+    const TetRef t = leaves_[first + i].tet;
+    places_[static_cast<std::size_t>(t.level)][t.slot] = static_cast<std::uint32_t>(first + i);
   });
 }
 
-void LabelledLeaves::label(LabelledLeaf& leaf, const std::vector<LabelledLeaf>& old, const Places& places,
-                           NewLabels how) const {
-  const auto place = [&](TetRef t) { return old.empty() ? kNone : places[static_cast<std::size_t>(t.level)][t.slot]; };
-  std::uint32_t from = place(leaf.tet);
+LabelledLeaf LabelledLeaves::labelled(TetRef tet, const std::vector<LabelledLeaf>& old, NewLabels how) const {
+  LabelledLeaf leaf;
+  leaf.tet = tet;
+  leaf.split_edges = static_cast<std::uint8_t>(lattice_.split_edges(tet));
+  std::uint32_t from = place_of(tet);
   const bool stayed = from != kNone;
   if (stayed && old[from].split_edges == leaf.split_edges) {
     leaf = old[from];
     leaf.fresh = false;
-    leaf.recounted = counted(leaf) != votes_.vote(leaf.tet).count;
+    leaf.recounted = counted(leaf) != votes_.vote(tet).count;
     if (leaf.recounted) recount(leaf);
-    return;
+    return leaf;
   }
   leaf.votes = fresh_votes(leaf);
   if (how == NewLabels::inherit) {
-    TetRef ancestor = leaf.tet;
+    TetRef ancestor = tet;
     while (from == kNone && ancestor.level > 0) {
       lattice_.find(ancestor.level - 1, bcc_parent(lattice_.barycentre(ancestor)), ancestor);
-      from = place(ancestor);
+      from = place_of(ancestor);
     }
     if (from != kNone && !old[from].revote) inherit(leaf, old[from]);
   } else if (stayed && old[from].decided) {
     inherit(leaf, old[from]);
   }
+  return leaf;
 }
 
 // Voxels that its parts know of: none while it is inside a large pure tetrahedron.

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "lattice/red_green.h"
@@ -18,6 +19,7 @@ struct LabelledLeaf {
   bool fresh = true;       ///< it, or its split, was not there before the last refinement
   bool recounted = false;  ///< it stayed, but voxels have become known that were inside a large pure tetrahedron
   bool revote = false;     ///< what it is refined into votes, even where all else inherits
+  bool gone = false;       ///< it was refined by the last replacements: no leaf any more
   std::array<Vote, 4> votes;
 
   const GreenSplit& split() const { return green_split(split_edges); }
@@ -39,6 +41,11 @@ class LabelledLeaves {
   /// so, by the centres of their parts, also when more of their edges are split now.
   void collect(NewLabels new_labels);
 
+  /// As collect(NewLabels::inherit), but leaves keep their places: those that are gone stay in the list until it is
+  /// collected, new ones come last. Returns the places of leaves that are gone, new, or may have changed: those of
+  /// `renewed` tetrahedra have got to know their voxels. Cost: by what has changed.
+  std::vector<std::uint32_t> replace(std::span<const TetRef> refined, std::span<const TetRef> renewed);
+
   /// Lets what a leaf is refined into next vote, and forget what was decided.
   void revote(std::size_t leaf) { leaves_[leaf].revote = true; }
 
@@ -49,7 +56,10 @@ class LabelledLeaves {
   static constexpr std::uint32_t kNone = ~0u;
   using Places = std::vector<std::vector<std::uint32_t>>;  // of leaves, by level and slot
 
-  void label(LabelledLeaf& leaf, const std::vector<LabelledLeaf>& old, const Places& places, NewLabels how) const;
+  std::vector<std::uint32_t> touched_places(std::span<const TetRef> refined, std::span<const TetRef> renewed) const;
+  std::uint32_t place_of(TetRef t) const;
+  void note_places(std::size_t first);
+  LabelledLeaf labelled(TetRef tet, const std::vector<LabelledLeaf>& old, NewLabels how) const;
   static std::uint32_t counted(const LabelledLeaf& leaf);
   void recount(LabelledLeaf& leaf) const;
   std::array<Vote, 4> fresh_votes(const LabelledLeaf& leaf) const;
@@ -59,6 +69,7 @@ class LabelledLeaves {
   const RedGreenLattice& lattice_;
   const VoxelVotes& votes_;
   std::vector<LabelledLeaf> leaves_;
+  Places places_;
 };
 
 }  // namespace anatomesh

@@ -30,25 +30,74 @@ std::array<LatticePoint, 10> nodes_of(const RedGreenLattice& lattice, TetRef lea
 }  // namespace
 
 LeafMesh LeafMesher::mesh(const std::vector<LabelledLeaf>& leaves, Bulk wanted) {
+  make_places();
+  std::vector<Entry> entries = make_entries(leaves, wanted);
+  Tets added;
+  const auto add_new = [&](std::size_t i) {
+    entries[i].first_new = static_cast<std::uint32_t>(added.size());
+    add(leaves[i], added);
+  };
+  for (std::size_t i = 0; i < leaves.size(); ++i) {
+    const Entry& entry = entries[i];
+    if (entry.bulk) continue;
+    if (!entry.known) add_new(i);
+    const Place& place = place_of(leaves[i].tet);
+    if (!entry.known || place.bulk)
+      mark_near(leaves[i], entry.known ? &tets_[place.first_tet] : &added[entry.first_new]);
+  }
+  want_bulk_near(leaves, entries);
+  far_.clear();
+  for (std::uint32_t i = 0; i < leaves.size(); ++i) {
+    if (!entries[i].wanted) far_.push_back(i);
+    if (entries[i].bulk && entries[i].wanted && !entries[i].known) add_new(i);
+  }
+  LeafMesh result = gather(leaves, entries, added);
+  place_vertices(result.mesh.points_mm);
+  tets_ = result.mesh.tets;
+  return result;
+}
+
+std::vector<TetId> LeafMesher::update(const std::vector<LabelledLeaf>& leaves, std::span<const std::uint32_t> touched,
+                                      TissueMesh& mesh, std::vector<LeafMesh::Origin>& origins) {
+  make_places();
+  std::vector<TetId> dropped;
+  for (const std::uint32_t i : touched) {
+    const LabelledLeaf& leaf = leaves[i];
+    Place& place = place_of(leaf.tet);
+    if (leaf.gone || place.split_edges != leaf.split_edges) drop(place, dropped);
+    if (leaf.gone) continue;
+    const bool bulk = is_bulk(leaf);
+    if (bulk) {
+      if (place.first_tet == kNone) far_.push_back(i);
+      continue;
+    }
+    const bool was_near = place.first_tet != kNone && !place.bulk;
+    if (place.first_tet == kNone) append(leaves, i, mesh, origins);
+    place.bulk = false;
+    if (!was_near) mark_near(leaf, &tets_[place.first_tet]);
+  }
+  append_bulk_near(leaves, mesh, origins);
+  place_vertices(mesh.points_mm);
+  std::ranges::sort(dropped);
+  return dropped;
+}
+
+void LeafMesher::make_places() {
   places_.resize(static_cast<std::size_t>(lattice_.max_level()) + 1);
   for (int level = 0; level <= lattice_.max_level(); ++level)
     places_[static_cast<std::size_t>(level)].resize(lattice_.slot_count(level));
-  std::vector<Entry> entries = make_entries(leaves, wanted);
-  Tets added;
-  for (std::size_t i = 0; i < leaves.size(); ++i) {
-    if (entries[i].bulk) continue;
-    if (!entries[i].known) add(leaves[i], entries[i], added);
-    if (!entries[i].known || place_of(leaves[i].tet).bulk) mark_near(leaves[i], entries[i], added);
-  }
-  want_bulk_near(leaves, entries);
-  for (std::size_t i = 0; i < leaves.size(); ++i) {
-    if (entries[i].bulk && entries[i].wanted && !entries[i].known) add(leaves[i], entries[i], added);
-  }
-  near_.resize(vertices_.points().size());
-  LeafMesh result = gather(leaves, entries, added);
-  place_vertices(result);
-  tets_ = result.mesh.tets;
-  return result;
+}
+
+bool LeafMesher::is_bulk(const LabelledLeaf& leaf) const {
+  return leaf.votes[0].tissue == 0 && !leaf.decided && votes_.hands_label_down(leaf.tet);
+}
+
+// Whether it touches something else than bulk background.
+bool LeafMesher::is_near(const LabelledLeaf& leaf) const {
+  return std::ranges::any_of(nodes_of(lattice_, leaf.tet, leaf.split_edges), [&](const LatticePoint& node) {
+    const std::uint32_t v = vertices_.find(node);
+    return v < near_.size() && near_[v];
+  });
 }
 
 std::vector<LeafMesher::Entry> LeafMesher::make_entries(const std::vector<LabelledLeaf>& leaves, Bulk wanted) const {
@@ -57,30 +106,23 @@ std::vector<LeafMesher::Entry> LeafMesher::make_entries(const std::vector<Labell
     const LabelledLeaf& leaf = leaves[i];
     const Place& place = place_of(leaf.tet);
     Entry& entry = entries[i];
-    entry.bulk = leaf.votes[0].tissue == 0 && !leaf.decided && votes_.hands_label_down(leaf.tet);
+    entry.bulk = is_bulk(leaf);
     entry.known = place.first_tet != kNone && place.split_edges == leaf.split_edges;
     entry.wanted = !entry.bulk || entry.known || wanted == Bulk::all;
   });
   return entries;
 }
 
-// Of the bulk background, what touches something else.
 void LeafMesher::want_bulk_near(const std::vector<LabelledLeaf>& leaves, std::vector<Entry>& entries) const {
-  const auto is_near = [&](const LatticePoint& node) {
-    const std::uint32_t v = vertices_.find(node);
-    return v != LatticePointMap::kNone && near_[v];
-  };
   parallel_for(leaves.size(), [&](std::size_t i) {
-    if (entries[i].wanted) return;
-    entries[i].wanted = std::ranges::any_of(nodes_of(lattice_, leaves[i].tet, leaves[i].split_edges), is_near);
+    if (!entries[i].wanted) entries[i].wanted = is_near(leaves[i]);
   });
 }
 
-void LeafMesher::add(const LabelledLeaf& leaf, Entry& entry, Tets& added) {
+void LeafMesher::add(const LabelledLeaf& leaf, Tets& added) {
   const auto nodes = nodes_of(lattice_, leaf.tet, leaf.split_edges);
   const bool positive = is_positive(lattice_.barycentre(leaf.tet));
   const GreenSplit& split = leaf.split();
-  entry.first_new = static_cast<std::uint32_t>(added.size());
   std::array<VertexId, 10> number;
   number.fill(LatticePointMap::kNone);
   for (std::size_t part = 0; part < static_cast<std::size_t>(split.count); ++part) {
@@ -95,12 +137,51 @@ void LeafMesher::add(const LabelledLeaf& leaf, Entry& entry, Tets& added) {
   }
 }
 
-void LeafMesher::mark_near(const LabelledLeaf& leaf, const Entry& entry, const Tets& added) {
+void LeafMesher::mark_near(const LabelledLeaf& leaf, const std::array<VertexId, 4>* tets) {
   near_.resize(vertices_.points().size());
-  const std::array<VertexId, 4>* tets = entry.known ? &tets_[place_of(leaf.tet).first_tet] : &added[entry.first_new];
   for (int part = 0; part < leaf.split().count; ++part) {
     for (const VertexId v : tets[part]) near_[v] = 1;
   }
+}
+
+void LeafMesher::drop(Place& place, std::vector<TetId>& dropped) const {
+  if (place.first_tet == kNone) return;
+  const auto count = static_cast<TetId>(green_split(place.split_edges).count);
+  for (TetId part = 0; part < count; ++part) dropped.push_back(place.first_tet + part);
+  place.first_tet = kNone;
+}
+
+void LeafMesher::append(const std::vector<LabelledLeaf>& leaves, std::uint32_t at, TissueMesh& mesh,
+                        std::vector<LeafMesh::Origin>& origins) {
+  const LabelledLeaf& leaf = leaves[at];
+  const auto first = static_cast<TetId>(tets_.size());
+  add(leaf, tets_);
+  mesh.tets.insert(mesh.tets.end(), tets_.begin() + first, tets_.end());
+  for (std::uint32_t part = 0; part < static_cast<std::uint32_t>(leaf.split().count); ++part) {
+    mesh.tissues.push_back(leaf.votes[part].tissue);
+    origins.push_back({at, part});
+  }
+  place_of(leaf.tet) = {first, leaf.split_edges, is_bulk(leaf)};
+}
+
+void LeafMesher::append_bulk_near(const std::vector<LabelledLeaf>& leaves, TissueMesh& mesh,
+                                  std::vector<LeafMesh::Origin>& origins) {
+  std::vector<char> wanted(far_.size());
+  parallel_for(far_.size(), [&](std::size_t n) {
+    const LabelledLeaf& leaf = leaves[far_[n]];
+    wanted[n] = !leaf.gone && is_bulk(leaf) && is_near(leaf);
+  });
+  std::size_t kept = 0;
+  for (std::size_t n = 0; n < far_.size(); ++n) {
+    const LabelledLeaf& leaf = leaves[far_[n]];
+    if (leaf.gone || place_of(leaf.tet).first_tet != kNone) continue;
+    if (wanted[n]) {
+      append(leaves, far_[n], mesh, origins);
+    } else {
+      far_[kept++] = far_[n];
+    }
+  }
+  far_.resize(kept);
 }
 
 // Bulk background last, else in the order of the leaves.
@@ -119,7 +200,6 @@ LeafMesh LeafMesher::gather(const std::vector<LabelledLeaf>& leaves, const std::
   result.mesh.tets.resize(count);
   result.mesh.tissues.resize(count);
   result.origins.resize(count);
-  result.from.resize(count);
   parallel_for(leaves.size(), [&](std::size_t i) {
     if (!entries[i].wanted) return;
     const LabelledLeaf& leaf = leaves[i];
@@ -130,20 +210,21 @@ LeafMesh LeafMesher::gather(const std::vector<LabelledLeaf>& leaves, const std::
       result.mesh.tets[t] = entry.known ? tets_[place.first_tet + part] : added[entry.first_new + part];
       result.mesh.tissues[t] = leaf.votes[part].tissue;
       result.origins[t] = {static_cast<std::uint32_t>(i), part};
-      result.from[t] = entry.known ? place.first_tet + part : TetComplex::kNone;
     }
     place = {first[i], leaf.split_edges, entry.bulk};
   });
   return result;
 }
 
-void LeafMesher::place_vertices(LeafMesh& result) const {
-  result.points = vertices_.points();
-  result.mesh.points_mm.resize(result.points.size());
+// Those that have no place yet.
+void LeafMesher::place_vertices(std::vector<Vec3>& points_mm) const {
+  const std::vector<LatticePoint>& points = vertices_.points();
+  const std::size_t first = points_mm.size();
+  points_mm.resize(points.size());
   const double fine_unit = std::ldexp(unit_mm_, -lattice_.max_level());
-  parallel_for(result.points.size(), [&](std::size_t v) {
-    const LatticePoint& p = result.points[v];
-    result.mesh.points_mm[v] = origin_mm_ + Vec3{fine_unit * p[0], fine_unit * p[1], fine_unit * p[2]};
+  parallel_for(points.size() - first, [&](std::size_t i) {
+    const LatticePoint& p = points[first + i];
+    points_mm[first + i] = origin_mm_ + Vec3{fine_unit * p[0], fine_unit * p[1], fine_unit * p[2]};
   });
 }
 

@@ -1,7 +1,9 @@
 // The leaves of the lattice and their green parts as a conforming mesh.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "lattice/labelled_leaves.h"
@@ -19,9 +21,7 @@ struct LeafMesh {
     std::uint32_t leaf, part;
   };
   TissueMesh mesh;
-  std::vector<LatticePoint> points;  ///< of the vertices, in units of the finest level
-  std::vector<Origin> origins;       ///< of the tetrahedra
-  std::vector<TetId> from;           ///< what number a tetrahedron had in the mesh made before, or TetComplex::kNone
+  std::vector<Origin> origins;  ///< of the tetrahedra
 };
 
 /// Makes the mesh again and again while the lattice is refined: vertices keep their numbers, and the tetrahedra of
@@ -36,6 +36,15 @@ class LeafMesher {
   enum class Bulk { near, all };
 
   LeafMesh mesh(const std::vector<LabelledLeaf>& leaves, Bulk wanted = Bulk::near);
+
+  /// Makes the last mesh follow leaves of which some (`touched`) are gone, new, split in another way or relabelled:
+  /// tetrahedra keep their numbers, new ones come last. Returns those that are no longer of the mesh, in ascending
+  /// order. Cost: by what was touched, and a look at the large background that is not in the mesh.
+  std::vector<TetId> update(const std::vector<LabelledLeaf>& leaves, std::span<const std::uint32_t> touched,
+                            TissueMesh& mesh, std::vector<LeafMesh::Origin>& origins);
+
+  /// The vertices, in units of the finest level.
+  const LatticePointMap& vertices() const { return vertices_; }
 
   /// The first tetrahedron of a leaf in the last mesh, or TetComplex::kNone.
   TetId first_tet(TetRef leaf) const { return place_of(leaf).first_tet; }
@@ -56,12 +65,20 @@ class LeafMesher {
 
   Place& place_of(TetRef leaf) { return places_[static_cast<std::size_t>(leaf.level)][leaf.slot]; }
   const Place& place_of(TetRef leaf) const { return places_[static_cast<std::size_t>(leaf.level)][leaf.slot]; }
+  void make_places();
+  bool is_bulk(const LabelledLeaf& leaf) const;
+  bool is_near(const LabelledLeaf& leaf) const;
   std::vector<Entry> make_entries(const std::vector<LabelledLeaf>& leaves, Bulk wanted) const;
   void want_bulk_near(const std::vector<LabelledLeaf>& leaves, std::vector<Entry>& entries) const;
-  void add(const LabelledLeaf& leaf, Entry& entry, Tets& added);
-  void mark_near(const LabelledLeaf& leaf, const Entry& entry, const Tets& added);
+  void add(const LabelledLeaf& leaf, Tets& added);
+  void mark_near(const LabelledLeaf& leaf, const std::array<VertexId, 4>* tets);
+  void drop(Place& place, std::vector<TetId>& dropped) const;
+  void append(const std::vector<LabelledLeaf>& leaves, std::uint32_t at, TissueMesh& mesh,
+              std::vector<LeafMesh::Origin>& origins);
+  void append_bulk_near(const std::vector<LabelledLeaf>& leaves, TissueMesh& mesh,
+                        std::vector<LeafMesh::Origin>& origins);
   LeafMesh gather(const std::vector<LabelledLeaf>& leaves, const std::vector<Entry>& entries, const Tets& added);
-  void place_vertices(LeafMesh& result) const;
+  void place_vertices(std::vector<Vec3>& points_mm) const;
 
   const RedGreenLattice& lattice_;
   const VoxelVotes& votes_;
@@ -71,6 +88,7 @@ class LeafMesher {
   std::vector<char> near_;                  // by vertex: of more than bulk background
   std::vector<std::vector<Place>> places_;  // by level and slot: where its tetrahedra are
   Tets tets_;                               // of the last mesh
+  std::vector<std::uint32_t> far_;          // leaves of large background that are not in it
 };
 
 /// The tissues, and of the background the tetrahedra that touch a tissue, these last.

@@ -20,13 +20,6 @@ constexpr std::size_t kMinRoom = 200000;
 constexpr std::size_t kMaxGroup = 2000;
 constexpr double kMaxPrice = VoxelVotes::kQuorum / 2;
 
-void record(const TissueMesh& mesh, const std::vector<LeafMesh::Origin>& origins, LabelledLeaves& leaves) {
-  for (std::size_t t = 0; t < origins.size(); ++t) {
-    const auto [leaf, part] = origins[t];
-    if (mesh.tissues[t] != leaves.list()[leaf].votes[part].tissue) leaves.decide(leaf, part, mesh.tissues[t]);
-  }
-}
-
 class LatticeMender {
  public:
   LatticeMender(const TissueImage& image, const ImageComponents& components, RedGreenLattice& lattice,
@@ -40,38 +33,43 @@ class LatticeMender {
         plan_(plan) {}
 
   LeafMesh run(const Stage& stage) {
+    take_mesh();
     for (int round = 0;; ++round) {
       stage.check_cancelled();
-      take_mesh(round == 0);
-      std::vector<TetId> changed, marked;
-      mend_around_core(changed);
+      changed_.clear();
+      mend_around_core();
       if (round == kPieceRounds - 1) std::fill(contents_.may_refine.begin(), contents_.may_refine.end(), char{0});
-      if (round < kPieceRounds) mend_pieces_here(changed, marked);
-      if (plan_.manifold) mend_surfaces_here(round == 0, changed, marked);
-      if (round == 0) max_tets_ = 4 * origins_.size() + kMinRoom;
-      const bool last = marked.empty() || round == kMaxRounds || origins_.size() > max_tets_;
+      std::vector<TetId> marked;
+      if (round < kPieceRounds) marked = mend_pieces_here();
+      if (plan_.manifold) mend_surfaces_here(round == 0, marked);
+      const bool last = marked.empty() || round == kMaxRounds || live_tets_ > max_tets_;
       if (last && plan_.manifold) untangle();
-      record(complex_.mesh, origins_, leaves_);
+      record_labels();
       if (last) break;
       refine(marked);
     }
-    return {std::move(complex_.mesh), std::move(points_), std::move(origins_), {}};
+    leaves_.collect(NewLabels::inherit);
+    return mesher_.mesh(leaves_.list());
   }
 
  private:
-  void take_mesh(bool first);
+  void take_mesh();
   std::vector<std::array<float, 5>> part_sizes() const;
-  TetContents contents() const;
-  std::vector<Claim> claims_from(const std::vector<TetId>& from) const;
-  void mend_pieces_here(std::vector<TetId>& changed, std::vector<TetId>& marked);
-  void mend_around_core(std::vector<TetId>& changed);
-  void mend_surfaces_here(bool all, std::vector<TetId>& changed, std::vector<TetId>& marked);
-  std::vector<VertexId> fresh_vertices(const std::vector<TetId>& changed) const;
+  TetContents empty_contents() const;
+  void extend_contents();
+  void describe(TetId t);
+  std::vector<TetId> mend_pieces_here();
+  void mend_around_core();
+  void mend_surfaces_here(bool all, std::vector<TetId>& marked);
+  std::vector<VertexId> fresh_vertices() const;
   void mark_around(const std::vector<VertexId>& singular, std::vector<TetId>& marked) const;
   void keep_core(const std::vector<VertexId>& singular);
   std::vector<VertexId> core_vertices() const;
   void untangle();
+  void record_labels();
   void refine(const std::vector<TetId>& marked);
+  void follow_leaves(std::vector<std::uint32_t> touched);
+  LatticePoint point(VertexId v) const { return mesher_.vertices().points()[v]; }
 
   const TissueImage& image_;
   const ImageComponents& components_;
@@ -83,27 +81,29 @@ class LatticeMender {
 
   TetComplex complex_;
   Pieces pieces_;
-  std::vector<LatticePoint> points_;
   std::vector<LeafMesh::Origin> origins_;
   TetContents contents_;
+  std::vector<std::array<float, 5>> part_sizes_;
   std::vector<Claim> claims_;
-  std::vector<TetId> fresh_;  // tetrahedra that the last mesh did not have
-  std::size_t max_tets_ = 0;
+  TetId first_fresh_ = 0;               // tetrahedra from here on are new since the last round
+  std::vector<TetId> changed_;          // relabelled in this round
+  std::vector<std::uint32_t> decided_;  // leaves that they are of
+  std::vector<VertexId> singular_;      // that were left
+  std::size_t live_tets_ = 0, max_tets_ = 0;
   LatticePointMap core_;  // singular vertices before the last refinement, and the middles of the edges between them
 };
 
-void LatticeMender::take_mesh(bool first) {
+void LatticeMender::take_mesh() {
   LeafMesh taken = mesher_.mesh(leaves_.list());
-  complex_ = first ? make_complex(std::move(taken.mesh)) : remake_complex(complex_, std::move(taken.mesh), taken.from);
-  points_ = std::move(taken.points);
+  complex_ = make_complex(std::move(taken.mesh));
   origins_ = std::move(taken.origins);
+  live_tets_ = origins_.size();
+  max_tets_ = 4 * live_tets_ + kMinRoom;
   pieces_ = find_pieces(complex_);
-  contents_ = contents();
-  claims_ = claims_from(taken.from);
-  fresh_.clear();
-  for (TetId t = 0; t < taken.from.size(); ++t) {
-    if (taken.from[t] == TetComplex::kNone) fresh_.push_back(t);
-  }
+  part_sizes_ = part_sizes();
+  contents_ = empty_contents();
+  extend_contents();
+  parallel_for(origins_.size(), [&](std::size_t t) { describe(static_cast<TetId>(t)); });
 }
 
 // Volumes of tetrahedra, in voxels: by level of the leaf and number of its parts.
@@ -119,7 +119,7 @@ std::vector<std::array<float, 5>> LatticeMender::part_sizes() const {
   return sizes;
 }
 
-TetContents LatticeMender::contents() const {
+TetContents LatticeMender::empty_contents() const {
   TetContents contents;
   contents.voxels = [this](TetId t) {
     const auto [leaf, part] = origins_[t];
@@ -130,62 +130,57 @@ TetContents LatticeMender::contents() const {
     const TetId first = holder ? mesher_.first_tet(holder->leaf) : TetComplex::kNone;
     return first == TetComplex::kNone ? first : first + static_cast<TetId>(holder->part);
   };
-  const std::size_t count = origins_.size();
-  contents.sizes.resize(count);
-  contents.fixed.resize(count);
-  contents.may_refine.resize(count);
-  contents.decided.resize(count);
-  const std::vector<std::array<float, 5>> sizes = part_sizes();
-  parallel_for(count, [&](std::size_t t) {
-    const LabelledLeaf& leaf = leaves_.list()[origins_[t].leaf];
-    contents.sizes[t] = sizes[static_cast<std::size_t>(leaf.tet.level)][static_cast<std::size_t>(leaf.split().count)];
-    contents.fixed[t] = votes_.hands_label_down(leaf.tet);
-    contents.may_refine[t] = leaf.tet.level < plan_.piece_level;
-    contents.decided[t] = leaf.decided;
-  });
   return contents;
 }
 
-// Those of tetrahedra that have stayed.
-std::vector<Claim> LatticeMender::claims_from(const std::vector<TetId>& from) const {
-  std::vector<Claim> claims(from.size());
-  parallel_for(from.size(), [&](std::size_t t) {
-    if (from[t] < claims_.size() && !leaves_.list()[origins_[t].leaf].recounted) claims[t] = claims_[from[t]];
-  });
-  return claims;
+void LatticeMender::extend_contents() {
+  const std::size_t count = origins_.size();
+  contents_.sizes.resize(count);
+  contents_.fixed.resize(count);
+  contents_.may_refine.resize(count);
+  contents_.decided.resize(count);
+  claims_.resize(count);
+}
+
+void LatticeMender::describe(TetId t) {
+  const LabelledLeaf& leaf = leaves_.list()[origins_[t].leaf];
+  contents_.sizes[t] =
+      part_sizes_[static_cast<std::size_t>(leaf.tet.level)][static_cast<std::size_t>(leaf.split().count)];
+  contents_.fixed[t] = votes_.hands_label_down(leaf.tet);
+  contents_.may_refine[t] = leaf.tet.level < plan_.piece_level;
+  contents_.decided[t] = leaf.decided;
 }
 
 // What is marked for the sake of pieces votes anew.
-void LatticeMender::mend_pieces_here(std::vector<TetId>& changed, std::vector<TetId>& marked) {
+std::vector<TetId> LatticeMender::mend_pieces_here() {
   PieceRepair repair = mend_pieces(complex_, pieces_, image_, components_, contents_, claims_);
-  changed.insert(changed.end(), repair.changed.begin(), repair.changed.end());
-  marked = std::move(repair.refine);
-  for (const TetId t : marked) leaves_.revote(origins_[t].leaf);
+  changed_.insert(changed_.end(), repair.changed.begin(), repair.changed.end());
+  for (const TetId t : repair.refine) leaves_.revote(origins_[t].leaf);
+  return std::move(repair.refine);
 }
 
-void LatticeMender::mend_around_core(std::vector<TetId>& changed) {
+void LatticeMender::mend_around_core() {
   if (core_.points().empty()) return;
-  mend_neighbourhoods(complex_, pieces_, core_vertices(), Reach::one_tissue, contents_.sizes, kMaxGroup, changed);
+  mend_neighbourhoods(complex_, pieces_, core_vertices(), Reach::one_tissue, contents_.sizes, kMaxGroup, changed_);
   core_ = {};
 }
 
-void LatticeMender::mend_surfaces_here(bool all, std::vector<TetId>& changed, std::vector<TetId>& marked) {
-  std::vector<VertexId> singular =
-      all ? singular_vertices(complex_) : singular_among(complex_, fresh_vertices(changed));
-  singular = mend_single_tets(complex_, pieces_, std::move(singular), voxel_price(complex_, image_, contents_),
-                              kMaxPrice, changed);
-  mark_around(singular, marked);
-  keep_core(singular);
+void LatticeMender::mend_surfaces_here(bool all, std::vector<TetId>& marked) {
+  singular_ = all ? singular_vertices(complex_) : singular_among(complex_, fresh_vertices());
+  singular_ = mend_single_tets(complex_, pieces_, std::move(singular_), voxel_price(complex_, image_, contents_),
+                               kMaxPrice, changed_);
+  mark_around(singular_, marked);
+  keep_core(singular_);
 }
 
 // Vertices at which something can have changed in this round.
-std::vector<VertexId> LatticeMender::fresh_vertices(const std::vector<TetId>& changed) const {
+std::vector<VertexId> LatticeMender::fresh_vertices() const {
   std::vector<VertexId> vertices;
   const auto add = [&](TetId t) {
     vertices.insert(vertices.end(), complex_.mesh.tets[t].begin(), complex_.mesh.tets[t].end());
   };
-  for (const TetId t : fresh_) add(t);
-  for (const TetId t : changed) add(t);
+  for (TetId t = first_fresh_; t < origins_.size(); ++t) add(t);
+  for (const TetId t : changed_) add(t);
   return vertices;
 }
 
@@ -200,12 +195,12 @@ void LatticeMender::mark_around(const std::vector<VertexId>& singular, std::vect
 
 void LatticeMender::keep_core(const std::vector<VertexId>& singular) {
   for (const VertexId v : singular) {
-    core_.insert(points_[v]);
+    core_.insert(point(v));
     for (const TetId t : complex_.tets_of_vertex[v]) {
       for (const VertexId w : complex_.mesh.tets[t]) {
         if (w <= v || !std::binary_search(singular.begin(), singular.end(), w)) continue;
         LatticePoint middle;
-        for (std::size_t a = 0; a < 3; ++a) middle[a] = (points_[v][a] + points_[w][a]) / 2;
+        for (std::size_t a = 0; a < 3; ++a) middle[a] = (point(v)[a] + point(w)[a]) / 2;
         core_.insert(middle);
       }
     }
@@ -214,9 +209,10 @@ void LatticeMender::keep_core(const std::vector<VertexId>& singular) {
 
 std::vector<VertexId> LatticeMender::core_vertices() const {
   std::vector<VertexId> vertices;
-  for (VertexId v = 0; v < points_.size(); ++v) {
-    if (core_.find(points_[v]) != LatticePointMap::kNone) vertices.push_back(v);
+  for (const LatticePoint& p : core_.points()) {
+    if (const VertexId v = mesher_.vertices().find(p); v != LatticePointMap::kNone) vertices.push_back(v);
   }
+  std::ranges::sort(vertices);
   return vertices;
 }
 
@@ -225,10 +221,8 @@ std::vector<VertexId> LatticeMender::core_vertices() const {
 void LatticeMender::untangle() {
   constexpr int kNearby = 4;  // so often no tissue is taken away from itself
   std::vector<VertexId> tangle;
-  std::vector<VertexId> singular = singular_vertices(complex_);
-  for (int n = 0; !singular.empty(); ++n, singular = singular_vertices(complex_)) {
-    std::vector<TetId> changed;
-    tangle.insert(tangle.end(), singular.begin(), singular.end());
+  for (int n = 0; !singular_.empty(); ++n, singular_ = singular_vertices(complex_)) {
+    tangle.insert(tangle.end(), singular_.begin(), singular_.end());
     const std::size_t known = tangle.size();
     for (std::size_t i = 0; i < known; ++i) {
       for (const TetId t : complex_.tets_of_vertex[tangle[i]])
@@ -237,18 +231,58 @@ void LatticeMender::untangle() {
     std::sort(tangle.begin(), tangle.end());
     tangle.erase(std::unique(tangle.begin(), tangle.end()), tangle.end());
     mend_neighbourhoods(complex_, pieces_, tangle, n < kNearby ? Reach::one_tissue : Reach::any, contents_.sizes,
-                        origins_.size(), changed);
+                        origins_.size(), changed_);
     mend_single_tets(complex_, pieces_, singular_vertices(complex_), voxel_price(complex_, image_, contents_),
-                     kMaxPrice, changed);
+                     kMaxPrice, changed_);
+  }
+}
+
+void LatticeMender::record_labels() {
+  decided_.clear();
+  for (const TetId t : changed_) {
+    const auto [leaf, part] = origins_[t];
+    if (complex_.tissue(t) == leaves_.list()[leaf].votes[part].tissue) continue;
+    leaves_.decide(leaf, part, complex_.tissue(t));
+    decided_.push_back(leaf);
   }
 }
 
 void LatticeMender::refine(const std::vector<TetId>& marked) {
-  std::vector<TetRef> leaves;
+  std::vector<TetRef> leaves, renewed;
   for (const TetId t : marked) leaves.push_back(leaves_.list()[origins_[t].leaf].tet);
-  for (const TetRef leaf : leaves) votes_.keep_voxels(leaf);
-  votes_.descend(lattice_.refine(leaves));
-  leaves_.collect(NewLabels::inherit);
+  for (const TetRef leaf : leaves) {
+    const std::vector<TetRef> known = votes_.keep_voxels(leaf);
+    renewed.insert(renewed.end(), known.begin(), known.end());
+  }
+  const std::vector<TetRef> refined = lattice_.refine(leaves);
+  votes_.descend(refined);
+  std::vector<std::uint32_t> touched = leaves_.replace(refined, renewed);
+  touched.insert(touched.end(), decided_.begin(), decided_.end());
+  follow_leaves(std::move(touched));
+}
+
+// Tetrahedra keep their numbers.
+void LatticeMender::follow_leaves(std::vector<std::uint32_t> touched) {
+  std::ranges::sort(touched);
+  const auto repeated = std::ranges::unique(touched);
+  touched.erase(repeated.begin(), repeated.end());
+  first_fresh_ = static_cast<TetId>(origins_.size());
+  const std::vector<TetId> dropped = mesher_.update(leaves_.list(), touched, complex_.mesh, origins_);
+  live_tets_ += origins_.size() - first_fresh_ - dropped.size();
+  replace_tets(complex_, dropped, first_fresh_);
+  pieces_ = find_pieces(complex_);
+  extend_contents();
+  for (const TetId t : dropped) claims_[t] = {};
+  for (const std::uint32_t i : touched) {
+    const LabelledLeaf& leaf = leaves_.list()[i];
+    const TetId first = leaf.gone ? TetComplex::kNone : mesher_.first_tet(leaf.tet);
+    if (first == TetComplex::kNone) continue;
+    for (TetId t = first; t < first + static_cast<TetId>(leaf.split().count); ++t) {
+      describe(t);
+      if (leaf.recounted) claims_[t] = {};
+    }
+  }
+  for (TetId t = first_fresh_; t < origins_.size(); ++t) describe(t);
 }
 
 }  // namespace
@@ -261,7 +295,11 @@ void clean_leaves(const VoxelVotes& votes, LabelledLeaves& leaves, LeafMesher& m
            leaf.votes[taken.origins[t].part].hits < VoxelVotes::kQuorum / 2;
   };
   clean_labels(taken.mesh, has_weak_vote);
-  record(taken.mesh, taken.origins, leaves);
+  for (std::size_t t = 0; t < taken.origins.size(); ++t) {
+    const auto [leaf, part] = taken.origins[t];
+    if (taken.mesh.tissues[t] != leaves.list()[leaf].votes[part].tissue)
+      leaves.decide(leaf, part, taken.mesh.tissues[t]);
+  }
 }
 
 LeafMesh mend_lattice(const TissueImage& image, const ImageComponents& components, RedGreenLattice& lattice,

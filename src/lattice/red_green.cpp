@@ -214,6 +214,7 @@ TetRef RedGreenLattice::create(int level, const LatticePoint& b) {
 
 std::vector<TetRef> RedGreenLattice::refine(const std::vector<TetRef>& marked) {
   std::vector<TetRef> refined;
+  resplit_.clear();
   for (const TetRef t : marked) {
     refine_one(t, refined);
     while (!pending_.empty()) {
@@ -258,6 +259,7 @@ void RedGreenLattice::split_edge(int level, const LatticePoint& midpoint, std::v
       t = require(level, b, refined);
     }
     state(t) = static_cast<std::uint8_t>(state(t) | 1u << bcc_edge_at(b, midpoint));
+    resplit_.push_back(t);
     if (!is_refined(t) && !is_green_pattern(split_edges(t))) pending_.push_back(t);
   }
 }

@@ -50,6 +50,9 @@ class RedGreenLattice {
   /// must follow. Returns all that were refined, parents before their children.
   std::vector<TetRef> refine(const std::vector<TetRef>& marked);
 
+  /// Tetrahedra of which edges were split by the last refinement; some more than once.
+  const std::vector<TetRef>& resplit() const { return resplit_; }
+
   /// All leaves, by level and slot.
   std::vector<TetRef> leaves() const;
 
@@ -79,7 +82,7 @@ class RedGreenLattice {
 
   std::array<std::int32_t, 3> root_cells_;
   std::vector<Level> levels_;
-  std::vector<TetRef> pending_;
+  std::vector<TetRef> pending_, resplit_;
 };
 
 /// The tetrahedra that a leaf with a green pattern falls into. Nodes 0 .. 3 are its vertices, 4 .. 9 the

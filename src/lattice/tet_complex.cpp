@@ -91,44 +91,59 @@ TetId find_behind(const TetComplex& complex, TetId t, std::size_t n) {
   return t;
 }
 
-// The lists of a mesh that has tetrahedron t of another, with the lists `before`, as number[t], and some that are
-// added.
-VertexLists<TetId> renumbered(const VertexLists<TetId>& before, std::span<const TetId> number, const TissueMesh& mesh,
-                              std::span<const TetId> added) {
-  VertexLists<TetId> lists;
-  lists.begin.assign(mesh.points_mm.size() + 1, 0);
-  parallel_for(before.size(), [&](std::size_t v) {
-    std::uint32_t kept = 0;
-    for (const TetId t : before[v]) kept += number[t] != TetComplex::kNone;
-    lists.begin[v + 1] = kept;
-  });
-  for (const TetId t : added) {
-    for (const VertexId v : mesh.tets[t]) ++lists.begin[v + 1];
-  }
-  std::partial_sum(lists.begin.begin(), lists.begin.end(), lists.begin.begin());
-  lists.items.resize(lists.begin.back());
-  std::vector<std::uint32_t> next(lists.begin.begin(), lists.begin.end() - 1);
-  parallel_for(before.size(), [&](std::size_t v) {
-    for (const TetId t : before[v]) {
-      if (number[t] != TetComplex::kNone) lists.items[next[v]++] = number[t];
-    }
-  });
-  for (const TetId t : added) {
-    for (const VertexId v : mesh.tets[t]) lists.items[next[v]++] = t;
-  }
-  parallel_for(lists.size(), [&](std::size_t v) {
-    const std::span<TetId> list(&lists.items[0] + lists.begin[v], &lists.items[0] + lists.begin[v + 1]);
-    if (!std::ranges::is_sorted(list)) std::ranges::sort(list);
-  });
-  return lists;
+// The corner of a tetrahedron that is not one of another with which it shares a face.
+std::size_t corner_beyond(const TissueMesh& mesh, TetId t, TetId other) {
+  const auto& theirs = mesh.tets[other];
+  const auto& own = mesh.tets[t];
+  const auto corner =
+      std::ranges::find_if(own, [&](VertexId v) { return std::ranges::find(theirs, v) == theirs.end(); });
+  return static_cast<std::size_t>(corner - own.begin());
 }
 
 }  // namespace
 
+VertexStars::VertexStars(VertexLists<TetId> lists) : places_(lists.size()), items_(std::move(lists.items)) {
+  for (std::size_t v = 0; v < places_.size(); ++v) places_[v] = {lists.begin[v], lists.begin[v + 1] - lists.begin[v]};
+}
+
+// Lists that change move to the end.
+void VertexStars::replace(std::span<const std::array<VertexId, 4>> tets, std::span<const TetId> dropped,
+                          TetId first_added, std::size_t vertex_count) {
+  places_.resize(vertex_count);
+  std::vector<char> is_dropped(first_added, 0), is_touched(vertex_count, 0);
+  std::vector<std::uint32_t> added(vertex_count, 0);
+  for (const TetId t : dropped) {
+    is_dropped[t] = 1;
+    for (const VertexId v : tets[t]) is_touched[v] = 1;
+  }
+  for (const auto& tet : tets.subspan(first_added)) {
+    for (const VertexId v : tet) is_touched[v] = 1, ++added[v];
+  }
+  std::vector<VertexId> touched;
+  std::vector<std::uint32_t> begin;
+  auto end = static_cast<std::uint32_t>(items_.size());
+  for (VertexId v = 0; v < vertex_count; ++v) {
+    if (!is_touched[v]) continue;
+    touched.push_back(v);
+    begin.push_back(end);
+    end += places_[v].count + added[v];
+  }
+  items_.resize(end);
+  parallel_for(touched.size(), [&](std::size_t i) {
+    Place& place = places_[touched[i]];
+    const auto first = items_.begin() + place.begin, to = items_.begin() + begin[i];
+    const auto kept = std::remove_copy_if(first, first + place.count, to, [&](TetId t) { return is_dropped[t]; });
+    place = {begin[i], static_cast<std::uint32_t>(kept - to)};
+  });
+  for (TetId t = first_added; t < tets.size(); ++t) {
+    for (const VertexId v : tets[t]) items_[places_[v].begin + places_[v].count++] = t;
+  }
+}
+
 TetComplex make_complex(TissueMesh mesh) {
   TetComplex complex;
   complex.mesh = std::move(mesh);
-  complex.tets_of_vertex = tets_of_vertices(complex.mesh.points_mm.size(), complex.mesh.tets);
+  complex.tets_of_vertex = VertexStars(tets_of_vertices(complex.mesh.points_mm.size(), complex.mesh.tets));
   complex.behind.resize(complex.mesh.tets.size());
   parallel_for(complex.mesh.points_mm.size(), [&](std::size_t v) {
     thread_local std::vector<OpenFace> open;
@@ -137,40 +152,23 @@ TetComplex make_complex(TissueMesh mesh) {
   return complex;
 }
 
-TetComplex remake_complex(const TetComplex& before, TissueMesh mesh, std::span<const TetId> from) {
-  TetComplex complex;
-  complex.mesh = std::move(mesh);
-  std::vector<TetId> number(before.mesh.tets.size(), TetComplex::kNone);
-  parallel_for(from.size(), [&](std::size_t t) {
-    if (from[t] != TetComplex::kNone) number[from[t]] = static_cast<TetId>(t);
-  });
-  std::vector<TetId> added;
-  std::vector<char> at_new(complex.mesh.points_mm.size(), 0);  // vertices of tetrahedra that are new
-  for (TetId t = 0; t < from.size(); ++t) {
-    if (from[t] != TetComplex::kNone) continue;
-    added.push_back(t);
-    for (const VertexId v : complex.mesh.tets[t]) at_new[v] = 1;
-  }
-  complex.tets_of_vertex = renumbered(before.tets_of_vertex, number, complex.mesh, added);
+void replace_tets(TetComplex& complex, std::span<const TetId> dropped, TetId first_added) {
+  complex.tets_of_vertex.replace(complex.mesh.tets, dropped, first_added, complex.mesh.points_mm.size());
   complex.behind.resize(complex.mesh.tets.size());
-  parallel_for(from.size(), [&](std::size_t i) {
-    const auto t = static_cast<TetId>(i);
-    std::array<TetId, 4>& behind = complex.behind[t];
-    if (from[t] == TetComplex::kNone) {
-      for (std::size_t n = 0; n < 4; ++n) behind[n] = find_behind(complex, t, n);
-      return;
-    }
-    bool is_inside = true;
-    for (std::size_t n = 0; n < 4; ++n) {
-      behind[n] = number[before.behind[from[t]][n]];
-      is_inside = is_inside && behind[n] != TetComplex::kNone && behind[n] != t;
-    }
-    for (std::size_t n = 0; !is_inside && n < 4; ++n) {  // beyond the border there may be something now
-      const bool may_have_new = behind[n] == t && at_new[complex.mesh.tets[t][(n + 1) % 4]];
-      if (behind[n] == TetComplex::kNone || may_have_new) behind[n] = find_behind(complex, t, n);
-    }
+  for (const TetId t : dropped) {
+    for (const TetId other : complex.behind[t]) std::ranges::replace(complex.behind[other], t, other);
+    complex.behind[t].fill(t);
+    complex.mesh.tissues[t] = 0;
+  }
+  parallel_for(complex.mesh.tets.size() - first_added, [&](std::size_t i) {
+    const auto t = static_cast<TetId>(first_added + i);
+    for (std::size_t n = 0; n < 4; ++n) complex.behind[t][n] = find_behind(complex, t, n);
   });
-  return complex;
+  for (TetId t = first_added; t < complex.mesh.tets.size(); ++t) {
+    for (const TetId other : complex.behind[t]) {
+      if (other < first_added) complex.behind[other][corner_beyond(complex.mesh, other, t)] = t;
+    }
+  }
 }
 
 namespace {

@@ -199,23 +199,26 @@ void VoxelVotes::hand_down(TetRef parent) {
   }
 }
 
-void VoxelVotes::keep_voxels(TetRef t) {
+std::vector<TetRef> VoxelVotes::keep_voxels(TetRef t) {
   state_ = new_state();
+  std::vector<TetRef> renewed;
   const auto level = static_cast<std::size_t>(t.level);
   if (is_inherited(t)) {
     TetRef parent;
     lattice_.find(t.level - 1, bcc_parent(lattice_.barycentre(t)), parent);
-    keep_voxels(parent);
-    hand_down_again(parent);
+    renewed = keep_voxels(parent);
+    hand_down_again(parent, renewed);
   }
   votes_[level][t.slot].pure = false;
+  return renewed;
 }
 
 // To all below it that do not hand a label down.
-void VoxelVotes::hand_down_again(TetRef parent) {
+void VoxelVotes::hand_down_again(TetRef parent, std::vector<TetRef>& renewed) {
   hand_down(parent);
   for (const TetRef child : lattice_.children(parent)) {
-    if (lattice_.is_refined(child) && !hands_label_down(child)) hand_down_again(child);
+    renewed.push_back(child);
+    if (lattice_.is_refined(child) && !hands_label_down(child)) hand_down_again(child, renewed);
   }
 }
 

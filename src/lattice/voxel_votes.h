@@ -31,8 +31,8 @@ class VoxelVotes {
   void descend(const std::vector<TetRef>& refined);
 
   /// From now on the children of a tetrahedron know their voxels, though it is pure and large or inside such a one. For
-  /// leaves whose label a repair may change.
-  void keep_voxels(TetRef t);
+  /// leaves whose label a repair may change. Returns the tetrahedra that have got to know their voxels so.
+  std::vector<TetRef> keep_voxels(TetRef t);
 
   const Vote& vote(TetRef t) const { return votes_[static_cast<std::size_t>(t.level)][t.slot]; }
 
@@ -81,7 +81,7 @@ class VoxelVotes {
   bool is_inherited(TetRef t) const { return begin_[static_cast<std::size_t>(t.level)][t.slot] == kInherited; }
   const GreenVoxels& voxels_of_green_parts(TetRef leaf) const;
   void hand_down(TetRef parent);
-  void hand_down_again(TetRef parent);
+  void hand_down_again(TetRef parent, std::vector<TetRef>& renewed);
   Vec3 position(std::uint32_t voxel, int level) const;
   std::pair<TissueId, std::uint32_t> most_frequent(std::span<const std::uint32_t> voxels) const;
   template <class Corners>
