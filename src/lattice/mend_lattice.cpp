@@ -9,6 +9,7 @@
 #include "lattice/clean_labels.h"
 #include "lattice/mend_pieces.h"
 #include "lattice/mend_surfaces.h"
+#include "lattice/update_pieces.h"
 
 namespace anatomesh {
 namespace {
@@ -270,7 +271,9 @@ void LatticeMender::follow_leaves(std::vector<std::uint32_t> touched) {
   const std::vector<TetId> dropped = mesher_.update(leaves_.list(), touched, complex_.mesh, origins_);
   live_tets_ += origins_.size() - first_fresh_ - dropped.size();
   replace_tets(complex_, dropped, first_fresh_);
-  pieces_ = find_pieces(complex_);
+  std::vector<TetId> replaced = dropped;
+  for (TetId t = first_fresh_; t < origins_.size(); ++t) replaced.push_back(t);
+  update_pieces(complex_, pieces_, replaced);
   extend_contents();
   for (const TetId t : dropped) claims_[t] = {};
   for (const std::uint32_t i : touched) {

@@ -12,6 +12,7 @@
 #include "base/parallel.h"
 #include "base/vec.h"
 #include "lattice/tet_map.h"
+#include "lattice/update_pieces.h"
 
 namespace anatomesh {
 namespace {
@@ -79,7 +80,7 @@ class PieceMender {
       cut_shared_pieces();
       join_pieces();
       if (repair_.changed.size() == done) break;
-      pieces_ = find_pieces(complex_);
+      update_pieces_here(done);
     }
     std::sort(repair_.refine.begin(), repair_.refine.end());
     repair_.refine.erase(std::unique(repair_.refine.begin(), repair_.refine.end()), repair_.refine.end());
@@ -87,6 +88,7 @@ class PieceMender {
   }
 
  private:
+  void update_pieces_here(std::size_t done);
   void find_open_tissues();
   Claim claim_of(TetId t) const;
   void find_claims(std::size_t done);
@@ -153,6 +155,7 @@ class PieceMender {
   std::vector<std::uint32_t> region_;      // by tetrahedron of a piece that is cut: the component it goes to
   std::vector<char> locked_;               // relabelled by a repair: others go around it
   PieceRepair repair_;
+  std::vector<std::pair<TetId, std::uint32_t>> was_of_;  // pieces of what was relabelled in this pass, before that
 
   std::vector<char> open_;           // by tissue: more than one piece or component
   std::vector<char> claimed_;        // by tissue: its claims are known
@@ -161,10 +164,16 @@ class PieceMender {
   std::vector<std::uint32_t> home_;  // by component: the piece that has most of its voxels, kNone for none
 };
 
+// After the relabelling of all from `done` on.
+void PieceMender::update_pieces_here(std::size_t done) {
+  for (; !was_of_.empty(); was_of_.pop_back()) pieces_.of_tet[was_of_.back().first] = was_of_.back().second;
+  update_pieces(complex_, pieces_, std::span(repair_.changed).subspan(done));
+}
+
 void PieceMender::find_open_tissues() {
   const auto components = components_.count_by_tissue(image_.labels.size());
   std::vector<std::uint32_t> pieces(image_.labels.size(), 0);
-  for (const auto& piece : pieces_.list) ++pieces[piece.tissue];
+  for (const auto& piece : pieces_.list) pieces[piece.tissue] += piece.tets > 0;
   open_.assign(image_.labels.size(), 0);
   for (std::size_t t = 1; t < open_.size(); ++t) open_[t] = pieces[t] != 1 || components[t] != 1;
 }
@@ -256,6 +265,7 @@ std::vector<std::vector<TetId>> PieceMender::tets_of(const std::vector<char>& wa
 }
 
 void PieceMender::relabel(TetId t, TissueId tissue, std::uint32_t piece) {
+  was_of_.emplace_back(t, pieces_.of_tet[t]);
   complex_.mesh.tissues[t] = tissue;
   pieces_.of_tet[t] = piece;
   locked_[t] = 1;

@@ -9,6 +9,7 @@
 
 #include "base/disjoint_sets.h"
 #include "base/parallel.h"
+#include "lattice/update_pieces.h"
 
 namespace anatomesh {
 namespace {
@@ -599,7 +600,7 @@ void mend_neighbourhoods(TetComplex& complex, Pieces& pieces, std::span<const Ve
       changed.push_back(t);
     }
   }
-  if (changed.size() > done) pieces = find_pieces(complex);
+  update_pieces(complex, pieces, std::span(changed).subspan(done));
 }
 
 }  // namespace anatomesh

@@ -42,7 +42,7 @@ enum class Reach { one_tissue, any };
 /// Gives the tetrahedra that touch these vertices to one tissue for each group of them: the one with most volume among
 /// those allowed that neither joins two pieces nor makes one vanish. With Reach::any, where the vertices are all the
 /// singular ones and the tetrahedra around them lie as in a regular neighbourhood, no defect is left. Groups of more
-/// than max_tets tetrahedra are left alone. sizes: volumes of the tetrahedra. Pieces are found anew.
+/// than max_tets tetrahedra are left alone. sizes: volumes of the tetrahedra. `pieces` stay true.
 void mend_neighbourhoods(TetComplex& complex, Pieces& pieces, std::span<const VertexId> vertices, Reach reach,
                          std::span<const float> sizes, std::size_t max_tets, std::vector<TetId>& changed);
 
