@@ -9,15 +9,16 @@
 namespace anatomesh {
 
 void LabelledLeaves::collect(NewLabels new_labels) {
-  const std::vector<LabelledLeaf> old = std::exchange(leaves_, {});
+  std::swap(leaves_, old_);
   const std::vector<TetRef> tets = lattice_.leaves();
   leaves_.resize(tets.size());
-  parallel_for(tets.size(), [&](std::size_t i) { leaves_[i] = labelled(tets[i], old, new_labels); });
-  places_.clear();
+  parallel_for(tets.size(), [&](std::size_t i) { leaves_[i] = labelled(tets[i], old_, new_labels); });
+  for (std::vector<std::uint32_t>& places : places_) std::ranges::fill(places, kNone);
   note_places(0);
 }
 
 std::vector<std::uint32_t> LabelledLeaves::replace(std::span<const TetRef> refined, std::span<const TetRef> renewed) {
+  old_ = {};
   std::vector<std::uint32_t> touched = touched_places(refined, renewed);
   const std::size_t first = leaves_.size();
   for (const TetRef t : refined) {

@@ -69,6 +69,7 @@ class LabelledLeaves {
   const RedGreenLattice& lattice_;
   const VoxelVotes& votes_;
   std::vector<LabelledLeaf> leaves_;
+  std::vector<LabelledLeaf> old_;  // of the last collection: their memory is used again
   Places places_;
 };
 
