@@ -103,6 +103,8 @@ class PieceMender {
   void cut_face(TetId a, TetId b);
   void join_pieces();
   double path_cost(TetId t, TissueId tissue) const;
+  double split_cost(TetId t) const;
+  bool refines_first(TetId t) const;
   void join_piece(std::uint32_t piece, const std::vector<TetId>& tets, DisjointSets& joined);
   // The last tetrahedron of a path, and the one of another piece behind it.
   struct Way {
@@ -145,7 +147,8 @@ class PieceMender {
   struct Known {
     TetId from = 0;
     bool reached = false;
-    double cost = -1;  // of a way through it
+    double cost = -1;        // of a way through it, negative: not known yet
+    double split_cost = -1;  // on top
   };
   TetMap<Known> known_;               // to the search for a path
   std::map<TetId, VainSearch> vain_;  // by the first tetrahedron of the piece
@@ -434,24 +437,32 @@ void PieceMender::join_pieces() {
   for (const std::uint32_t p : order) join_piece(p, tets[p], joined);
 }
 
-// What it costs, in voxels, to lead a path of a tissue through a tetrahedron of another. One that will be refined first
-// counts by its width, less where it holds voxels of the tissue.
+// What it costs, in voxels, to lead a path of a tissue through a tetrahedron of another, without what it costs to split
+// that. One that will be refined first counts by its width, less where it holds voxels of the tissue.
 double PieceMender::path_cost(TetId t, TissueId tissue) const {
-  constexpr double kLocked = 8, kSplits = 5;
+  constexpr double kLocked = 8;
   const auto size = static_cast<double>(contents_.sizes[t]);
-  if (contents_.may_refine[t] && (contents_.fixed[t] || contents_.sizes[t] > kPathSize)) {
+  if (refines_first(t)) {
     const auto voxels = contents_.voxels(t);
     const bool leads_there =
         std::any_of(voxels.begin(), voxels.end(), [&](auto v) { return image_.voxels[v] == tissue; });
     return leads_there ? 0.5 : 1 + std::cbrt(size);
   }
-  double cost = price_(t, tissue) + 0.2 * size + 0.05;
-  if (locked_[t]) cost += kLocked;
-  if (complex_.tissue(t) != 0 && !neighbours_hang_together(complex_, t)) cost += kSplits;
-  return cost;
+  return price_(t, tissue) + 0.2 * size + 0.05 + (locked_[t] ? kLocked : 0);
 }
 
-// Dijkstra's algorithm from a piece to the nearest other piece of the same component.
+double PieceMender::split_cost(TetId t) const {
+  constexpr double kSplits = 5;
+  return complex_.tissue(t) == 0 || refines_first(t) || neighbours_hang_together(complex_, t) ? 0 : kSplits;
+}
+
+// Whether a path through a tetrahedron waits until it has been refined.
+bool PieceMender::refines_first(TetId t) const {
+  return contents_.may_refine[t] && (contents_.fixed[t] || contents_.sizes[t] > kPathSize);
+}
+
+// Dijkstra's algorithm from a piece to the nearest other piece of the same component. Whether a path splits what it
+// leads through takes long to find out: a step waits in the queue without that cost until it is its turn.
 std::optional<PieceMender::Way> PieceMender::find_way(std::uint32_t piece, const std::vector<TetId>& tets,
                                                       DisjointSets& joined) {
   constexpr double kReach = 40;
@@ -461,6 +472,7 @@ std::optional<PieceMender::Way> PieceMender::find_way(std::uint32_t piece, const
   struct Step {
     double cost;
     TetId tet, from;
+    bool is_whole = true;  // its cost has that of splitting in it
     bool operator>(const Step& o) const { return std::tie(cost, tet) > std::tie(o.cost, o.tet); }
   };
   std::priority_queue<Step, std::vector<Step>, std::greater<>> open;
@@ -473,6 +485,13 @@ std::optional<PieceMender::Way> PieceMender::find_way(std::uint32_t piece, const
     open.pop();
     Known& here = known_[step.tet];
     if (here.reached) continue;
+    if (!step.is_whole) {
+      if (here.split_cost < 0) here.split_cost = split_cost(step.tet);
+      if (here.split_cost > 0) {
+        if (const double cost = step.cost + here.split_cost; cost < kReach) open.push({cost, step.tet, step.from});
+        continue;
+      }
+    }
     here.reached = true;
     here.from = step.from;
     ++visited;
@@ -487,7 +506,7 @@ std::optional<PieceMender::Way> PieceMender::find_way(std::uint32_t piece, const
       Known& there = known_[other];
       if (there.reached) continue;
       if (there.cost < 0) there.cost = touches_other_component(other, component) ? kReach : path_cost(other, tissue);
-      if (step.cost + there.cost < kReach) open.push({step.cost + there.cost, other, step.tet});
+      if (step.cost + there.cost < kReach) open.push({step.cost + there.cost, other, step.tet, false});
     }
   }
   return {};
