@@ -49,6 +49,7 @@ class LatticeMender {
       if (last) break;
       refine(marked);
     }
+    if (first_fresh_ == 0) return {std::move(complex_.mesh), std::move(origins_)};  // nothing was refined
     leaves_.collect(NewLabels::inherit);
     return mesher_.mesh(leaves_.list());
   }
