@@ -7,7 +7,6 @@
 #include <numeric>
 #include <utility>
 
-#include "base/disjoint_sets.h"
 #include "base/parallel.h"
 #include "lattice/update_pieces.h"
 
