@@ -2,7 +2,7 @@
 #   make demo     install, build, mesh a brain atlas of 116 tissues, show how good the mesh is
 #   make test     install, build, run all tests
 .DEFAULT_GOAL := help
-.PHONY: help packages build bench demo test asan check-style clean
+.PHONY: help packages build bench demo test asan fuzz check-style clean
 
 JOBS ?= $(shell nproc)
 PYTHON ?= /usr/bin/python3
@@ -10,6 +10,7 @@ ATLAS := /usr/share/mricron/templates/aal.nii.gz
 PROGRAM := build/release/bin/anatomesh
 # Images that `make bench` runs from file to file beside CGAL.
 BENCH_IMAGES ?= $(ATLAS)
+FUZZ_SECONDS ?= 600
 
 help:
 	@echo "make demo         mesh a brain atlas of 116 tissues into demo/, with tables and a picture"
@@ -17,6 +18,7 @@ help:
 	@echo "make build        build the program: $(PROGRAM)"
 	@echo "make bench        measure the time of each stage, and of the whole way beside CGAL; writes docs/speed.md"
 	@echo "make asan         run the library's tests under the address and undefined-behaviour sanitizers"
+	@echo "make fuzz         read damaged mesh files under the sanitizers for FUZZ_SECONDS ($(FUZZ_SECONDS))"
 	@echo "make check-style  check the format and the layers of the sources"
 	@echo "make clean        remove build/ and demo/"
 	@echo "Missing Debian packages are installed first (as root, or with sudo)."
@@ -43,6 +45,7 @@ test: packages
 	cmake --preset ci
 	cmake --build --preset ci -j $(JOBS)
 	$(MAKE) --no-print-directory asan
+	$(MAKE) --no-print-directory fuzz FUZZ_SECONDS=120
 	ctest --preset ci -j $(JOBS)
 	@echo "next: make demo, or read CONTRIBUTING.md before a change"
 
@@ -59,6 +62,11 @@ asan: packages
 	cmake --preset asan
 	cmake --build --preset asan -j $(JOBS)
 	ctest --preset asan -j $(JOBS)
+
+fuzz: packages
+	cmake --preset fuzz
+	cmake --build --preset fuzz -j $(JOBS)
+	ASAN_OPTIONS=max_allocation_size_mb=2048 build/fuzz/bin/fuzz_mesh_files build/fuzz/files $(FUZZ_SECONDS)
 
 check-style: packages
 	tools/check_style.sh
