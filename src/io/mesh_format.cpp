@@ -7,8 +7,12 @@
 
 #include "anatomesh/errors.h"
 #include "anatomesh/io.h"
+#include "io/abaqus_mesh.h"
+#include "io/febio_mesh.h"
+#include "io/nastran_mesh.h"
 #include "io/number_text.h"
 #include "io/output_file.h"
+#include "io/tetgen_mesh.h"
 #include "io/vtk_mesh.h"
 
 namespace anatomesh {
@@ -17,6 +21,11 @@ namespace {
 constexpr std::array kFormats = {
     MeshFormat{".vtu", "VTK XML unstructured grid", &write_vtu, &read_vtu},
     MeshFormat{".vtk", "VTK legacy unstructured grid", &write_legacy_vtk, &read_legacy_vtk},
+    MeshFormat{".inp", "Abaqus and CalculiX input", &write_abaqus, &read_abaqus},
+    MeshFormat{".bdf", "Nastran bulk data", &write_nastran, &read_nastran, kLargestNastranNumber},
+    MeshFormat{".feb", "FEBio model", &write_febio, &read_febio},
+    MeshFormat{".node", "TetGen nodes", &write_tetgen, &read_tetgen},
+    MeshFormat{".ele", "TetGen elements", &write_tetgen, &read_tetgen},
 };
 
 /// Extensions of the formats that suit: ".a, .b or .c".

@@ -65,7 +65,9 @@ std::size_t TextCursor::count_of(std::size_t least_bytes_each) {
 }
 
 void TextCursor::fail(const std::string& why) const {
-  const auto lines = std::count(bytes_.begin(), bytes_.begin() + static_cast<std::ptrdiff_t>(at_), '\n');
+  // What has just been read may have been a whole line with its end.
+  const std::size_t read = at_ > 0 ? at_ - 1 : 0;
+  const auto lines = std::count(bytes_.begin(), bytes_.begin() + static_cast<std::ptrdiff_t>(read), '\n');
   throw_damaged(path_, "line " + number_text(lines + 1) + ": " + why);
 }
 

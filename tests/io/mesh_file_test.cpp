@@ -140,9 +140,11 @@ TEST_F(MeshFile, LabelTableRoundTrips) {
 }
 
 TEST_F(MeshFile, SameMeshSameBytes) {
-  for (const std::string& extension : mesh_extensions()) {
-    write_mesh(in_folder("one" + extension), many_tets(1000));
-    write_mesh(in_folder("two" + extension), many_tets(1000));
+  for (const MeshFormat& format : mesh_formats()) {
+    const std::string extension(format.extension);
+    const TetMesh mesh = with_labels_for(format, many_tets(1000));
+    write_mesh(in_folder("one" + extension), mesh);
+    write_mesh(in_folder("two" + extension), mesh);
     EXPECT_EQ(bytes_of(in_folder("one" + extension)), bytes_of(in_folder("two" + extension)));
   }
 }
@@ -211,7 +213,7 @@ TEST_F(MeshFile, UnusableFilesAreRefused) {
     refused<IoError>(name, "something else");
     refused<IoError>(name, std::string(1000, '\0'));
   }
-  EXPECT_SAYS(refused<InvalidInput>("mesh.obj", "v 0 0 0"), ".vtu or .vtk");
+  EXPECT_SAYS(refused<InvalidInput>("mesh.obj", "v 0 0 0"), "the extension must be .vtu, .vtk");
   EXPECT_SAYS(refused<IoError>("mesh.vtk", "# vtk DataFile Version 2.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 0 float\n"),
               "unstructured grid");
 }
@@ -223,9 +225,10 @@ TEST_F(MeshFile, MeshWithoutTetrahedraIsRefused) {
 }
 
 TEST_F(MeshFile, TruncatedFilesAreRefused) {
-  for (const std::string& extension : mesh_extensions()) {
+  for (const MeshFormat& format : mesh_formats()) {
+    const std::string extension(format.extension);
     const auto whole = in_folder("whole" + extension);
-    write_mesh(whole, many_tets(2000));
+    write_mesh(whole, with_labels_for(format, many_tets(2000)));
     const std::string bytes = bytes_of(whole);
     for (std::size_t part = 1; part < 40; ++part) {
       refused<IoError>("cut" + extension, bytes.substr(0, part * bytes.size() / 40));
@@ -235,12 +238,13 @@ TEST_F(MeshFile, TruncatedFilesAreRefused) {
 
 TEST_F(MeshFile, DamagedFilesNeverCrash) {
   std::mt19937 random(3);
-  for (const std::string& extension : mesh_extensions()) {
+  for (const MeshFormat& format : mesh_formats()) {
+    const std::string extension(format.extension);
 #ifdef __SANITIZE_ADDRESS__
     if (extension == ".vtu") continue;  // VTK asks for absurd sizes, which end the process here and throw elsewhere
 #endif
     const auto whole = in_folder("whole" + extension);
-    write_mesh(whole, many_tets(50));
+    write_mesh(whole, with_labels_for(format, many_tets(50)));
     const std::string bytes = bytes_of(whole);
     for (int trial = 0; trial < 300; ++trial) {
       std::string damaged = bytes;
