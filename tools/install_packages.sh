@@ -7,9 +7,10 @@ packages=(
   # to build
   g++ make cmake ninja-build
   libinsighttoolkit5-dev libvtk9-dev libtbb-dev libeigen3-dev libnanoflann-dev
-  libcli11-dev nlohmann-json3-dev libfmt-dev zlib1g-dev
+  libcli11-dev nlohmann-json3-dev libfmt-dev libpugixml-dev zlib1g-dev
   # to test
   libgtest-dev clang-format libbenchmark-dev valgrind pkg-config dpkg-dev file
+  calculix-ccx python3-meshio tetgen
   # for the demo: the images, and pictures without a display
   mricron-data python3 python3-vtk9 python3-numpy xvfb xauth libgl1-mesa-dri
   "$@"

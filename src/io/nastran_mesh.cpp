@@ -164,16 +164,17 @@ class NastranReader {
     has_end_ |= comment == kFirstComment;
     if (const auto label = label_comment_in(comment)) return add_name(*label, names_);
     if (!comment.starts_with(kPointComment)) return;
-    split_at_spaces(comment.substr(kPointComment.size()), words_);
+    split_at_spaces(comment.substr(kPointComment.size()), words_);  // "4 is 0 0 0.3333333333333333"
     if (words_.size() != 5 || words_[1] != "is") return;
-    exact_ = {text_.number_from<std::int64_t>(words_[0]),
-              {text_.number_from<double>(words_[2]), text_.number_from<double>(words_[3]),
-               text_.number_from<double>(words_[4])}};
+    told_place_ = {text_.number_from<std::int64_t>(words_[0]),
+                   {text_.number_from<double>(words_[2]), text_.number_from<double>(words_[3]),
+                    text_.number_from<double>(words_[4])}};
   }
 
   void begin_entry(std::string_view line) {
     take_entry();
     entry_.clear();
+    exact_ = std::exchange(told_place_, std::nullopt);
     split_at_spaces(line, words_);
     const std::string first = in_capitals(words_.front());
     is_at_end_ = first == "ENDDATA";
@@ -258,9 +259,10 @@ class NastranReader {
   }
 
   TextCursor text_;
-  std::vector<std::string_view> words_;  // of the present line
-  std::vector<std::string_view> entry_;  // the fields of its lines so far
-  std::optional<NumberedPoint> exact_;   // of the last comment that told a place
+  std::vector<std::string_view> words_;      // of the present line
+  std::vector<std::string_view> entry_;      // the fields of its lines so far
+  std::optional<NumberedPoint> exact_;       // the place told by a comment before the entry
+  std::optional<NumberedPoint> told_place_;  // the same for the next one
   NumberedMesh mesh_;
   LabelTable names_;
   bool has_end_ = false;  // but for files that are to be included in others
