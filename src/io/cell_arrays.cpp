@@ -36,25 +36,12 @@ bool is_integral(const CellArray& array) {
   return array.values.type != NumberType::f32 && array.values.type != NumberType::f64;
 }
 
-/// The array that holds the tissues; null where the file has no such thing.
-const CellArray* label_array(const std::vector<CellArray>& arrays) {
-  for (const char* name : kLabelNames) {
-    for (const CellArray& array : arrays) {
-      if (small_letters(array.name) == name) return &array;
-    }
-  }
-  for (const CellArray& array : arrays) {
-    const bool is_id = std::find(kIdNames.begin(), kIdNames.end(), small_letters(array.name)) != kIdNames.end();
-    if (is_integral(array) && !is_id) return &array;
-  }
-  return nullptr;
-}
-
 /// One label a cell.
 std::vector<Label> labels_of(const std::filesystem::path& path, const CellArrays& cells) {
   std::vector<Label> labels(cells.types.size(), Label{1});
-  const CellArray* const array = label_array(cells.arrays);
-  if (array == nullptr) return labels;
+  const auto chosen = label_array(cells.arrays);
+  if (!chosen) return labels;
+  const CellArray* const array = &cells.arrays[*chosen];
   if (array->values.size() != labels.size()) {
     throw_damaged(
         path, "it has " + number_text(array->values.size()) + " labels for " + number_text(labels.size()) + " cells");
@@ -121,6 +108,19 @@ std::array<VertexId, 4> tet_at(const std::filesystem::path& path, const CellArra
 
 void throw_damaged(const std::filesystem::path& path, const std::string& why) {
   throw IoError(in_quotes(path) + " is truncated or damaged: " + why);
+}
+
+std::optional<std::size_t> label_array(const std::vector<CellArray>& arrays) {
+  for (const char* name : kLabelNames) {
+    for (std::size_t n = 0; n < arrays.size(); ++n) {
+      if (small_letters(arrays[n].name) == name) return n;
+    }
+  }
+  for (std::size_t n = 0; n < arrays.size(); ++n) {
+    const bool is_id = std::find(kIdNames.begin(), kIdNames.end(), small_letters(arrays[n].name)) != kIdNames.end();
+    if (is_integral(arrays[n]) && !is_id) return n;
+  }
+  return std::nullopt;
 }
 
 TetMesh tet_mesh_from(const std::filesystem::path& path, CellArrays cells) {

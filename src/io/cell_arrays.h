@@ -4,20 +4,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "anatomesh/tet_mesh.h"
-#include "io/voxel_type.h"
+#include "io/number_array.h"
 
 namespace anatomesh {
-
-/// Numbers of one type, in this machine's byte order.
-struct NumberArray {
-  NumberType type = NumberType::u8;
-  std::vector<std::byte> bytes;
-  std::size_t size() const { return bytes.size() / bytes_of(type); }
-};
 
 /// One value a cell, with its name.
 struct CellArray {
@@ -44,6 +38,9 @@ struct CellArrays {
   std::vector<std::string> label_names;
   NumberArray label_colours;  ///< red, green, blue for each
 };
+
+/// Which of the arrays holds the tissues, by its name and type; nothing where none does.
+std::optional<std::size_t> label_array(const std::vector<CellArray>& arrays);
 
 /// Takes the linear tetrahedra out, as read_mesh() says. Throws IoError (arrays that do not fit together),
 /// InvalidInput (no tetrahedra, labels that are none).

@@ -86,32 +86,18 @@ class LegacyReader {
 
   /// Binary numbers are stored big end first.
   void take_binary(NumberArray& to) {
-    const std::size_t each = bytes_of(to.type);
     const std::string_view stored = text_.take(to.bytes.size());
     std::memcpy(to.bytes.data(), stored.data(), stored.size());
-    for (auto value = to.bytes.begin(); value != to.bytes.end(); value += static_cast<std::ptrdiff_t>(each)) {
-      std::reverse(value, value + static_cast<std::ptrdiff_t>(each));
-    }
+    reverse_bytes(to);
   }
 
   void take_ascii(NumberArray& to) {
-    for_type(to.type, [&]<typename Value>(Value) {
+    with_number_type(to.type, [&]<typename Value>(Value) {
       for (std::size_t n = 0; n < to.bytes.size() / sizeof(Value); ++n) {
         const auto value = text_.number<Value>();
         std::memcpy(to.bytes.data() + n * sizeof(Value), &value, sizeof(Value));
       }
     });
-  }
-
-  std::vector<std::int64_t> integers(const NumberArray& from) const {
-    std::vector<std::int64_t> result(from.size());
-    for_type(from.type, [&]<typename Value>(Value value) {
-      for (std::size_t n = 0; n < result.size(); ++n) {
-        std::memcpy(&value, from.bytes.data() + n * sizeof(Value), sizeof(Value));
-        result[n] = in_int64(value);
-      }
-    });
-    return result;
   }
 
   // ---- sections
@@ -161,26 +147,19 @@ class LegacyReader {
 
   void points() {
     const std::size_t point_count = count();
-    const NumberArray coordinates = array(number_type(), 3 * point_count);
-    cells_.points_mm.resize(point_count);
-    for_type(coordinates.type, [&]<typename Value>(Value value) {
-      for (std::size_t n = 0; n < 3 * point_count; ++n) {
-        std::memcpy(&value, coordinates.bytes.data() + n * sizeof(Value), sizeof(Value));
-        cells_.points_mm[n / 3][n % 3] = static_cast<double>(value);
-      }
-    });
+    cells_.points_mm = points_of(array(number_type(), 3 * point_count));
   }
 
   void cells() {
     const std::size_t first = count(), second = count();
     if (is_version_5_) {
       if (upper_word() != "OFFSETS") text_.fail("its cells have no offsets");
-      cells_.offsets = integers(array(number_type(), first));
+      cells_.offsets = integers_of(array(number_type(), first));
       if (upper_word() != "CONNECTIVITY") text_.fail("its cells have no connectivity");
-      cells_.corners = integers(array(number_type(), second));
+      cells_.corners = integers_of(array(number_type(), second));
       return;
     }
-    const std::vector<std::int64_t> list = integers(array(NumberType::i32, second));
+    const std::vector<std::int64_t> list = integers_of(array(NumberType::i32, second));
     cells_.offsets = {0};
     for (std::size_t at = 0; at < list.size();) {
       const std::int64_t corners = list[at++];
@@ -195,7 +174,7 @@ class LegacyReader {
     if (cells_.offsets.size() != first + 1) text_.fail("its cells are not as many as it declares");
   }
 
-  void cell_types() { cells_.types = integers(array(NumberType::i32, count())); }
+  void cell_types() { cells_.types = integers_of(array(NumberType::i32, count())); }
 
   void cell_data() { begin_data(true); }
   void point_data() { begin_data(false); }
@@ -290,43 +269,6 @@ class LegacyReader {
   void metadata() {
     text_.line();
     while (!text_.at_end() && !text_.line().empty()) continue;
-  }
-
-  // ---- conversions
-
-  /// Calls with a value of the C++ type of the given number type.
-  template <typename Call>
-  static void for_type(NumberType type, Call&& call) {
-    switch (type) {
-      case NumberType::u8:
-        return call(std::uint8_t{});
-      case NumberType::i8:
-        return call(std::int8_t{});
-      case NumberType::u16:
-        return call(std::uint16_t{});
-      case NumberType::i16:
-        return call(std::int16_t{});
-      case NumberType::u32:
-        return call(std::uint32_t{});
-      case NumberType::i32:
-        return call(std::int32_t{});
-      case NumberType::u64:
-        return call(std::uint64_t{});
-      case NumberType::i64:
-        return call(std::int64_t{});
-      case NumberType::f32:
-        return call(float{});
-      case NumberType::f64:
-        return call(double{});
-    }
-  }
-
-  /// Ids and offsets; what does not fit becomes -1, which is out of range for all of them.
-  template <typename Value>
-  static std::int64_t in_int64(Value value) {
-    constexpr std::int64_t kMost = std::int64_t{1} << 53;
-    return value >= 0 && static_cast<double>(value) <= static_cast<double>(kMost) ? static_cast<std::int64_t>(value)
-                                                                                  : -1;
   }
 
   /// Names have spaces and the like as %20.

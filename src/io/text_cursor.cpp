@@ -4,7 +4,7 @@
 #include <cctype>
 #include <cstdint>
 #include <fstream>
-#include <iterator>
+#include <system_error>
 #include <utility>
 
 #include "anatomesh/errors.h"
@@ -19,13 +19,18 @@ constexpr std::size_t kShown = 40;  // bytes of a wrong word in a message
 
 bool is_space(char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; }
 
+}  // namespace
+
 std::string bytes_of_file(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw IoError("cannot open " + in_quotes(path));
-  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  std::error_code none;
+  const auto size = std::filesystem::file_size(path, none);
+  std::string bytes(none ? 0 : size, '\0');
+  stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(stream.gcount()));
+  return bytes;
 }
-
-}  // namespace
 
 TextCursor::TextCursor(std::filesystem::path path) : path_(std::move(path)), bytes_(bytes_of_file(path_)) {}
 TextCursor::TextCursor(std::filesystem::path path, std::string bytes)

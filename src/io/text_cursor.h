@@ -61,6 +61,9 @@ class TextCursor {
   std::size_t at_ = 0;
 };
 
+/// All of it. Throws IoError.
+std::string bytes_of_file(const std::filesystem::path& path);
+
 /// In small or capital letters (ASCII).
 std::string in_small_letters(std::string_view text);
 std::string in_capitals(std::string_view text);
