@@ -9,6 +9,9 @@
 #include "anatomesh/io.h"
 #include "io/abaqus_mesh.h"
 #include "io/febio_mesh.h"
+#include "io/gmsh_mesh.h"
+#include "io/medit_mesh.h"
+#include "io/mesh_groups.h"
 #include "io/nastran_mesh.h"
 #include "io/number_text.h"
 #include "io/output_file.h"
@@ -26,6 +29,8 @@ constexpr std::array kFormats = {
     MeshFormat{".feb", "FEBio model", &write_febio, &read_febio},
     MeshFormat{".node", "TetGen nodes", &write_tetgen, &read_tetgen},
     MeshFormat{".ele", "TetGen elements", &write_tetgen, &read_tetgen},
+    MeshFormat{".msh", "Gmsh", &write_gmsh, &read_gmsh, kLargestGroup},
+    MeshFormat{".mesh", "MEDIT", &write_medit, &read_medit, kLargestGroup},
 };
 
 /// Extensions of the formats that suit: ".a, .b or .c".

@@ -60,12 +60,14 @@ void tell_apart(std::map<Label, std::string>& names, const NameRule& rule) {
 
 }  // namespace
 
+std::string default_set_name(Label label) { return std::string("label_").append(number_text(label)); }
+
 std::map<Label, std::string> set_names(const TetMesh& mesh, const NameRule& rule) {
   std::map<Label, std::string> names;
   for (const Label label : std::set<Label>(mesh.labels.begin(), mesh.labels.end())) {
     const auto entry = mesh.names.find(label);
     std::string name = entry == mesh.names.end() ? "" : allowed(entry->second.name, rule);
-    if (name.empty()) name = std::string("label_").append(number_text(label));
+    if (name.empty()) name = default_set_name(label);
     shorten(name, rule.most_bytes);
     names[label] = name;
   }

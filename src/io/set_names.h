@@ -20,4 +20,7 @@ struct NameRule {
 /// none. Two labels of equal names get "_7" behind theirs.
 std::map<Label, std::string> set_names(const TetMesh& mesh, const NameRule& rule);
 
+/// What set_names() calls a label without a name: "label_7".
+std::string default_set_name(Label label);
+
 }  // namespace anatomesh
