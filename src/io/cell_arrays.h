@@ -19,7 +19,7 @@ struct CellArray {
   NumberArray values;
 };
 
-/// Names of the arrays in VTK's files that hold the label table; one tuple a label.
+/// Names of the arrays in VTK's files that hold the label table: see vtk_mesh.h.
 struct NameArrays {
   const char* values = "label_values";
   const char* names = "label_names";

@@ -187,6 +187,8 @@ class LegacyReader {
   void keep(std::string_view name, std::size_t components, NumberArray values) {
     if (name == kNameArrays.values)
       cells_.label_values = std::move(values);
+    else if (name == kNameArrays.names)
+      cells_.label_names = texts_of(values);
     else if (name == kNameArrays.colours)
       cells_.label_colours = std::move(values);
     else if (is_cell_data_ && components == 1)

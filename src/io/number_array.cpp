@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <iterator>
 
 namespace anatomesh {
 namespace {
@@ -38,6 +39,17 @@ std::vector<Vec3> points_of(const NumberArray& array) {
       result[n / 3][n % 3] = static_cast<double>(value);
     }
   });
+  return result;
+}
+
+std::vector<std::string> texts_of(const NumberArray& array) {
+  std::vector<std::string> result;
+  auto begin = array.bytes.begin();
+  for (auto end = begin; (end = std::find(begin, array.bytes.end(), std::byte{0})) != array.bytes.end();
+       begin = end + 1) {
+    std::string& text = result.emplace_back();
+    std::transform(begin, end, std::back_inserter(text), [](std::byte byte) { return static_cast<char>(byte); });
+  }
   return result;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "anatomesh/types.h"
@@ -25,6 +26,9 @@ std::vector<std::int64_t> integers_of(const NumberArray& array);
 
 /// Three numbers a point; those left over are dropped.
 std::vector<Vec3> points_of(const NumberArray& array);
+
+/// Bytes as texts, each up to a zero.
+std::vector<std::string> texts_of(const NumberArray& array);
 
 /// Calls with a zero of the C++ type of the given number type.
 template <typename Call>

@@ -7,7 +7,6 @@
 #include <vtkFieldData.h>
 #include <vtkNew.h>
 #include <vtkPoints.h>
-#include <vtkStringArray.h>
 #include <vtkTypeInt32Array.h>
 #include <vtkTypeInt64Array.h>
 #include <vtkUnsignedCharArray.h>
@@ -64,7 +63,7 @@ vtkSmartPointer<vtkCellArray> vtk_cells(const TetMesh& mesh) {
 void add_names(vtkUnstructuredGrid& grid, const LabelTable& names) {
   if (names.empty()) return;
   vtkNew<vtkUnsignedIntArray> values;
-  vtkNew<vtkStringArray> texts;
+  vtkNew<vtkUnsignedCharArray> texts;
   vtkNew<vtkUnsignedCharArray> colours;
   values->SetName(kNameArrays.values);
   texts->SetName(kNameArrays.names);
@@ -72,7 +71,8 @@ void add_names(vtkUnstructuredGrid& grid, const LabelTable& names) {
   colours->SetNumberOfComponents(3);
   for (const auto& [label, entry] : names) {
     values->InsertNextValue(label);
-    texts->InsertNextValue(entry.name);
+    for (const char c : entry.name) texts->InsertNextValue(static_cast<unsigned char>(c));
+    texts->InsertNextValue(0);
     if (entry.colour) colours->InsertNextTypedTuple(entry.colour->data());
   }
   grid.GetFieldData()->AddArray(values);

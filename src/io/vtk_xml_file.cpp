@@ -25,7 +25,8 @@ struct TypeName {
   NumberType type;
 };
 
-constexpr std::array<TypeName, 10> kTypeNames = {{{"UInt8", NumberType::u8},
+/// Strings are stored as their bytes, each with a zero behind it.
+constexpr std::array<TypeName, 11> kTypeNames = {{{"UInt8", NumberType::u8},
                                                   {"Int8", NumberType::i8},
                                                   {"UInt16", NumberType::u16},
                                                   {"Int16", NumberType::i16},
@@ -34,7 +35,8 @@ constexpr std::array<TypeName, 10> kTypeNames = {{{"UInt8", NumberType::u8},
                                                   {"UInt64", NumberType::u64},
                                                   {"Int64", NumberType::i64},
                                                   {"Float32", NumberType::f32},
-                                                  {"Float64", NumberType::f64}}};
+                                                  {"Float64", NumberType::f64},
+                                                  {"String", NumberType::i8}}};
 
 bool is_within(std::string_view text, std::initializer_list<std::string_view> choices) {
   return std::ranges::find(choices, text) != choices.end();
@@ -156,17 +158,6 @@ NumberArray VtkXmlFile::numbers(pugi::xml_node array) const {
   if (result.bytes.size() % anatomesh::bytes_of(*type) != 0) place.fail("ends within a number");
   const bool is_text = std::string_view(array.attribute("format").as_string("ascii")) == "ascii";
   if (!is_text && storage_.order != std::endian::native) reverse_bytes(result);
-  return result;
-}
-
-std::vector<std::string> VtkXmlFile::texts(pugi::xml_node array) const {
-  const std::vector<std::byte> bytes = bytes_of(array, NumberType::i8);
-  std::vector<std::string> result;
-  auto begin = bytes.begin();
-  for (auto end = begin; (end = std::find(begin, bytes.end(), std::byte{0})) != bytes.end(); begin = end + 1) {
-    std::string& text = result.emplace_back();
-    std::transform(begin, end, std::back_inserter(text), [](std::byte byte) { return static_cast<char>(byte); });
-  }
   return result;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <pugixml.hpp>
 #include <string>
 #include <string_view>
@@ -27,8 +28,6 @@ class VtkXmlFile {
 
   /// All numbers of an array. Throws IoError.
   NumberArray numbers(pugi::xml_node array) const;
-  /// All texts of an array of type String. Throws IoError.
-  std::vector<std::string> texts(pugi::xml_node array) const;
 
  private:
   void cut_appended_off();
@@ -48,7 +47,7 @@ class VtkXmlFile {
   pugi::xml_node data_set_;
 };
 
-/// The type of numbers an array says it has. Nothing for texts, bits and unknown ones.
+/// The type of numbers an array says it has. Nothing for bits and unknown ones.
 std::optional<NumberType> number_type_of(pugi::xml_node array);
 
 /// "Name" of an array, or of whatever else has one.

@@ -34,9 +34,9 @@ class VtuReader {
   void take_names(pugi::xml_node data) {
     const pugi::xml_node values = array_in(data, kNameArrays.values), names = array_in(data, kNameArrays.names);
     const pugi::xml_node colours = array_in(data, kNameArrays.colours);
-    if (!values || !names || !number_type_of(values)) return;
+    if (!number_type_of(values) || !number_type_of(names)) return;
     cells_.label_values = file_.numbers(values);
-    cells_.label_names = file_.texts(names);
+    cells_.label_names = texts_of(file_.numbers(names));
     if (number_type_of(colours)) cells_.label_colours = file_.numbers(colours);
   }
 
