@@ -11,6 +11,7 @@ packages=(
   # to test
   libgtest-dev clang-format libbenchmark-dev valgrind pkg-config dpkg-dev file
   calculix-ccx python3-meshio tetgen
+  libgtest-dev clang-format libbenchmark-dev valgrind gmsh python3-meshio
   # for the demo: the images, and pictures without a display
   mricron-data python3 python3-vtk9 python3-numpy xvfb xauth libgl1-mesa-dri
   "$@"

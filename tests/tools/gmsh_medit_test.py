@@ -62,16 +62,18 @@ def volumes_mm3(points, tets, labels):
 
 
 def surfaces(tets, labels):
-    """(inside, outside) -> set of faces; 0 outside the mesh."""
-    labels_at = {}
-    for tet, label in zip(tets.tolist(), labels.tolist()):
-        for face in FACES:
-            labels_at.setdefault(tuple(sorted(tet[n] for n in face)), []).append(label)
+    """(inside, outside) -> faces; 0 outside the mesh."""
+    faces = np.sort(np.concatenate([tets[:, face] for face in FACES]), axis=1)
+    order = np.lexsort(faces.T)
+    faces, sides = faces[order], np.tile(labels, 4)[order]
+    is_shared = (faces[1:] == faces[:-1]).all(axis=1)
+    first, last = np.append(True, ~is_shared), np.append(~is_shared, True)
+    inside = np.minimum(sides[first], sides[last])
+    outside = np.where(first[last], 0, np.maximum(sides[first], sides[last]))
     found = {}
-    for face, sides in labels_at.items():
-        pair = (sides[0], 0) if len(sides) == 1 else (min(sides), max(sides))
-        if pair[0] != pair[1]:
-            found.setdefault(pair, set()).add(face)
+    for face, low, high in zip(faces[first].tolist(), inside.tolist(), outside.tolist()):
+        if low != high:
+            found.setdefault((low, high), []).append(tuple(face))
     return found
 
 
@@ -221,7 +223,10 @@ class Formats(unittest.TestCase):
             tets, labels = tets_and_labels(mesh, "label")
             blocks = [("tetra", tets[labels == label]) for label in np.unique(labels)]
             tags = [np.full(len(block), label, np.int32) for (_, block), label in zip(blocks, np.unique(labels))]
-            gmsh = meshio.Mesh(mesh.points, blocks, cell_data={"gmsh:physical": tags, "gmsh:geometrical": tags})
+            places = np.zeros((len(mesh.points), 2), np.int32)
+            places[tets] = np.stack([np.full(len(labels), 3), labels], axis=1)[:, np.newaxis]
+            gmsh = meshio.Mesh(mesh.points, blocks, {"gmsh:dim_tags": places},
+                               {"gmsh:physical": tags, "gmsh:geometrical": tags})
             medit = meshio.Mesh(mesh.points, blocks, cell_data={"medit:ref": tags})
             for name, written, options in (("a.msh", gmsh, {"file_format": "gmsh", "binary": True}),
                                            ("b.msh", gmsh, {"file_format": "gmsh", "binary": False}),
