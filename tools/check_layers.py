@@ -25,6 +25,7 @@ FENCES = [
     ("Eigen", re.compile(r"^(unsupported/)?Eigen/"), ("src/fem",)),
     ("ITK", re.compile(r"^itk"), ("src/io", "plugins")),
     ("VTK", re.compile(r"^vtk"), ("src/io", "plugins")),
+    ("HDF5", re.compile(r"^hdf5"), ("src/io",)),
     ("pugixml", re.compile(r"^pugi"), ("src/io",)),
     ("CGAL", re.compile(r"^CGAL/"), ("benchmarks",)),
     ("CLI11", re.compile(r"^CLI/"), ("apps", "benchmarks")),

@@ -8,6 +8,8 @@ packages=(
   g++ make cmake ninja-build
   libinsighttoolkit5-dev libvtk9-dev libtbb-dev libeigen3-dev libnanoflann-dev
   libcli11-dev nlohmann-json3-dev libfmt-dev libpugixml-dev zlib1g-dev
+  libcli11-dev nlohmann-json3-dev libfmt-dev zlib1g-dev
+  libhdf5-dev libpugixml-dev
   # to test
   libgtest-dev clang-format libbenchmark-dev valgrind pkg-config dpkg-dev file
   calculix-ccx python3-meshio tetgen

@@ -55,12 +55,21 @@ void write_mesh(const std::filesystem::path& path, const TetMesh& mesh);
 /// are not whole numbers from 0 to 2^32 - 1).
 TetMesh read_mesh(const std::filesystem::path& path);
 
+/// Writes the closed surface of each tissue into a file of its own, STL, PLY, OBJ or VTP by the extension:
+/// "brain.stl" becomes "brain_Liver.stl", or "brain_label_7.stl" where the label has no name. All of them or
+/// none. Returns their paths, by ascending label.
+/// Throws IoError, InvalidInput (unknown extension, or not one label a tetrahedron).
+std::vector<std::filesystem::path> write_tissue_surfaces(const std::filesystem::path& path, const TetMesh& mesh);
+
 /// Throws IoError unless a file can be written there: its folder exists and is writable, and it is not
 /// itself a folder. Meant to be called before the long work starts. Any extension will do.
 void check_writable(const std::filesystem::path& path);
 
 /// As check_writable(), and throws InvalidInput unless write_mesh() knows the extension.
 void check_mesh_writable(const std::filesystem::path& path);
+
+/// As check_writable(), and throws InvalidInput unless write_tissue_surfaces() knows the extension.
+void check_tissue_surfaces_writable(const std::filesystem::path& path);
 
 /// Writes a text file, whole or nothing: an earlier file stays as it is unless all of the new one could
 /// be written. Something there that is neither file nor folder (a pipe, /dev/stdout) is written to as it

@@ -15,8 +15,10 @@
 #include "io/nastran_mesh.h"
 #include "io/number_text.h"
 #include "io/output_file.h"
+#include "io/surface_files.h"
 #include "io/tetgen_mesh.h"
 #include "io/vtk_mesh.h"
+#include "io/xdmf_mesh.h"
 
 namespace anatomesh {
 namespace {
@@ -31,6 +33,11 @@ constexpr std::array kFormats = {
     MeshFormat{".ele", "TetGen elements", &write_tetgen, &read_tetgen},
     MeshFormat{".msh", "Gmsh", &write_gmsh, &read_gmsh, kLargestGroup},
     MeshFormat{".mesh", "MEDIT", &write_medit, &read_medit, kLargestGroup},
+    MeshFormat{".xdmf", "XDMF 3 with HDF5", &write_xdmf, &read_xdmf},
+    MeshFormat{".stl", "STL surface", &write_stl, nullptr},
+    MeshFormat{".ply", "PLY surface", &write_ply, nullptr},
+    MeshFormat{".obj", "OBJ surface", &write_obj, nullptr},
+    MeshFormat{".vtp", "VTK XML surface", &write_vtp, nullptr},
 };
 
 /// Extensions of the formats that suit: ".a, .b or .c".

@@ -58,6 +58,13 @@ int write_all(Descriptor& file, std::string_view bytes) {
   return file.close() ? 0 : errno;
 }
 
+/// The target is for messages.
+void write_bytes(const fs::path& path, std::string_view bytes, const fs::path& target) {
+  Descriptor file(path, O_WRONLY | O_TRUNC);
+  const int error_number = file.is_open() ? write_all(file, bytes) : errno;
+  if (error_number != 0) throw_cannot_write(target, reason(error_number));
+}
+
 fs::path folder_of(const fs::path& file) { return file.has_parent_path() ? file.parent_path() : fs::path("."); }
 
 /// Where the bytes will lie: the end of a chain of symbolic links, so that links stay links.
@@ -93,6 +100,8 @@ OutputFile::~OutputFile() {
   fs::remove(temporary_, ignored);
 }
 
+void OutputFile::write(std::string_view bytes) const { write_bytes(temporary_, bytes, target_); }
+
 void OutputFile::commit() {
   std::error_code failure;
   fs::rename(temporary_, target_, failure);
@@ -101,14 +110,9 @@ void OutputFile::commit() {
 }
 
 void write_whole_file(const fs::path& target, std::string_view bytes) {
-  const auto write_to = [&](const fs::path& path) {
-    Descriptor file(path, O_WRONLY | O_TRUNC);
-    const int error_number = file.is_open() ? write_all(file, bytes) : errno;
-    if (error_number != 0) throw_cannot_write(target, reason(error_number));
-  };
-  if (is_stream(target)) return write_to(target);
+  if (is_stream(target)) return write_bytes(target, bytes, target);
   OutputFile file(target);
-  write_to(file.temporary());
+  file.write(bytes);
   file.commit();
 }
 

@@ -20,6 +20,12 @@ class OutputFile {
   /// Where to write; ends with the target's file name, so that its extension is kept.
   const std::filesystem::path& temporary() const { return temporary_; }
 
+  /// Where it will lie: the target, or what it links to.
+  const std::filesystem::path& target() const { return target_; }
+
+  /// Makes the bytes its content. Throws IoError.
+  void write(std::string_view bytes) const;
+
   /// Puts the written file in the target's place. Throws IoError.
   void commit();
 

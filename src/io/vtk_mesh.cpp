@@ -3,13 +3,9 @@
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkCellType.h>
-#include <vtkDoubleArray.h>
-#include <vtkFieldData.h>
 #include <vtkNew.h>
-#include <vtkPoints.h>
 #include <vtkTypeInt32Array.h>
 #include <vtkTypeInt64Array.h>
-#include <vtkUnsignedCharArray.h>
 #include <vtkUnsignedIntArray.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkUnstructuredGridWriter.h>
@@ -23,23 +19,11 @@
 #include "io/legacy_vtk.h"
 #include "io/output_file.h"
 #include "io/vtk_session.h"
+#include "io/vtk_xml.h"
 #include "io/vtu_cells.h"
 
 namespace anatomesh {
 namespace {
-
-vtkSmartPointer<vtkPoints> vtk_points(const TetMesh& mesh) {
-  vtkNew<vtkDoubleArray> coordinates;
-  coordinates->SetNumberOfComponents(3);
-  coordinates->SetNumberOfTuples(static_cast<vtkIdType>(mesh.points_mm.size()));
-  double* out = coordinates->GetPointer(0);
-  for (const Vec3& p : mesh.points_mm) {
-    for (std::size_t axis = 0; axis < 3; ++axis) *out++ = p[axis];
-  }
-  auto points = vtkSmartPointer<vtkPoints>::New();
-  points->SetData(coordinates);
-  return points;
-}
 
 /// Cells with 32-bit ids where they fit, which halves what there is to compress.
 template <typename IdArray>
@@ -59,30 +43,9 @@ vtkSmartPointer<vtkCellArray> vtk_cells(const TetMesh& mesh) {
   return cells;
 }
 
-/// The label table as field data: see vtk_mesh.h.
-void add_names(vtkUnstructuredGrid& grid, const LabelTable& names) {
-  if (names.empty()) return;
-  vtkNew<vtkUnsignedIntArray> values;
-  vtkNew<vtkUnsignedCharArray> texts;
-  vtkNew<vtkUnsignedCharArray> colours;
-  values->SetName(kNameArrays.values);
-  texts->SetName(kNameArrays.names);
-  colours->SetName(kNameArrays.colours);
-  colours->SetNumberOfComponents(3);
-  for (const auto& [label, entry] : names) {
-    values->InsertNextValue(label);
-    for (const char c : entry.name) texts->InsertNextValue(static_cast<unsigned char>(c));
-    texts->InsertNextValue(0);
-    if (entry.colour) colours->InsertNextTypedTuple(entry.colour->data());
-  }
-  grid.GetFieldData()->AddArray(values);
-  grid.GetFieldData()->AddArray(texts);
-  if (colours->GetNumberOfTuples() == values->GetNumberOfTuples()) grid.GetFieldData()->AddArray(colours);
-}
-
 vtkSmartPointer<vtkUnstructuredGrid> vtk_grid(const TetMesh& mesh) {
   auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
-  grid->SetPoints(vtk_points(mesh));
+  grid->SetPoints(vtk_points(mesh.points_mm));
   constexpr std::size_t kMost32 = std::numeric_limits<vtkTypeInt32>::max();
   const bool fits_32 = 4 * mesh.tets.size() <= kMost32 && mesh.points_mm.size() <= kMost32;
   grid->SetCells(VTK_TETRA, fits_32 ? vtk_cells<vtkTypeInt32Array>(mesh) : vtk_cells<vtkTypeInt64Array>(mesh));
@@ -91,22 +54,13 @@ vtkSmartPointer<vtkUnstructuredGrid> vtk_grid(const TetMesh& mesh) {
   labels->SetNumberOfValues(static_cast<vtkIdType>(mesh.labels.size()));
   std::copy(mesh.labels.begin(), mesh.labels.end(), labels->GetPointer(0));
   grid->GetCellData()->SetScalars(labels);
-  add_names(*grid, mesh.names);
+  add_names(*grid->GetFieldData(), mesh.names);
   return grid;
 }
 
 std::string vtu_bytes(vtkUnstructuredGrid* grid) {
-  constexpr std::size_t kBlockBytes = std::size_t{1} << 20;
   vtkNew<vtkXMLUnstructuredGridWriter> writer;
-  writer->SetInputData(grid);
-  writer->SetDataModeToAppended();
-  writer->EncodeAppendedDataOff();
-  writer->SetHeaderTypeToUInt64();
-  writer->SetCompressorTypeToZLib();
-  writer->SetCompressionLevel(1);
-  writer->SetBlockSize(kBlockBytes);
-  writer->WriteToOutputStringOn();
-  return writer->Write() == 1 ? writer->GetOutputString() : std::string();
+  return xml_bytes(*writer, *grid);
 }
 
 std::string vtk_bytes(vtkUnstructuredGrid* grid) {

@@ -1,0 +1,86 @@
+#include "io/surface.h"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "io/set_names.h"
+
+namespace anatomesh {
+namespace {
+
+constexpr std::size_t kMostNameBytes = 100;  // file systems allow 255 for all of a file's name
+
+SurfacePart part_of(const TetMesh& mesh, const Interface& interface) {
+  SurfacePart part{interface.inside, interface.outside, {}, {}};
+  for (const TetFace face : interface.faces) part.triangles.push_back(corners_of(mesh, face));
+  return part;
+}
+
+SurfacePart seen_from_outside(SurfacePart part) {
+  std::swap(part.inside, part.outside);
+  for (auto& triangle : part.triangles) std::swap(triangle[1], triangle[2]);
+  return part;
+}
+
+// Renumbers the vertices of the mesh; only those in use are kept.
+void take_points(const TetMesh& mesh, Surface& surface) {
+  std::vector<VertexId> used;
+  for (const SurfacePart& part : surface.parts) {
+    for (const auto& triangle : part.triangles) used.insert(used.end(), triangle.begin(), triangle.end());
+  }
+  std::ranges::sort(used);
+  used.erase(std::unique(used.begin(), used.end()), used.end());
+  for (const VertexId vertex : used) surface.points_mm.push_back(mesh.points_mm[vertex]);
+  for (SurfacePart& part : surface.parts) {
+    for (auto& triangle : part.triangles) {
+      for (VertexId& v : triangle) v = static_cast<VertexId>(std::ranges::lower_bound(used, v) - used.begin());
+    }
+  }
+}
+
+void complete(const TetMesh& mesh, const std::map<Label, std::string>& names, Surface& surface) {
+  take_points(mesh, surface);
+  for (SurfacePart& part : surface.parts) part.name = interface_name(names, part.inside, part.outside);
+  surface.names = mesh.names;
+}
+
+}  // namespace
+
+Surface interface_surface(const TetMesh& mesh) {
+  Surface surface;
+  for (const Interface& interface : interfaces_of(mesh)) surface.parts.push_back(part_of(mesh, interface));
+  complete(mesh, tissue_names(mesh), surface);
+  return surface;
+}
+
+std::map<Label, Surface> tissue_surfaces(const TetMesh& mesh) {
+  std::map<Label, Surface> surfaces;
+  const std::set<Label> tissues(mesh.labels.begin(), mesh.labels.end());
+  for (const Interface& interface : interfaces_of(mesh)) {
+    SurfacePart part = part_of(mesh, interface);
+    // A tissue that is labelled 0 can only be inside: it is the smallest label.
+    if (interface.outside != 0) surfaces[interface.outside].parts.push_back(seen_from_outside(part));
+    surfaces[interface.inside].parts.push_back(std::move(part));
+  }
+  const std::map<Label, std::string> names = tissue_names(mesh);
+  for (auto& [label, surface] : surfaces) complete(mesh, names, surface);
+  return surfaces;
+}
+
+std::size_t triangle_count(const Surface& surface) {
+  std::size_t count = 0;
+  for (const SurfacePart& part : surface.parts) count += part.triangles.size();
+  return count;
+}
+
+std::string interface_name(const std::map<Label, std::string>& names, Label inside, Label outside) {
+  const std::string& name = names.at(inside);
+  return outside == 0 ? name + "_skin" : name + "_to_" + names.at(outside);
+}
+
+std::map<Label, std::string> tissue_names(const TetMesh& mesh) {
+  return set_names(mesh, {.identifier = true, .most_bytes = kMostNameBytes, .tells_case_apart = false});
+}
+
+}  // namespace anatomesh
