@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <exception>
 #include <new>
 #include <utility>
 
@@ -17,14 +18,17 @@
 namespace anatomesh {
 namespace {
 
-/// While it lives, the library does not print errors of its own.
+/// While it lives, the library does not print errors of its own. After an error it stays muted: the damaged file may
+/// remain open in it, about which it would complain at the end of the process.
 class MutedHdf5 {
  public:
   MutedHdf5() {
     H5Eget_auto2(H5E_DEFAULT, &print_, &with_);
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   }
-  ~MutedHdf5() { H5Eset_auto2(H5E_DEFAULT, print_, with_); }
+  ~MutedHdf5() {
+    if (std::uncaught_exceptions() == 0) H5Eset_auto2(H5E_DEFAULT, print_, with_);
+  }
   MutedHdf5(const MutedHdf5&) = delete;
   MutedHdf5& operator=(const MutedHdf5&) = delete;
 
@@ -199,7 +203,10 @@ struct OpenedDataset {
   std::uint64_t largest_piece(std::uint64_t count) const {
     std::array<hsize_t, H5S_MAX_RANK> chunk;
     std::uint64_t piece = 1;
-    const int rank = H5Pget_layout(creation) == H5D_CHUNKED ? H5Pget_chunk(creation, H5S_MAX_RANK, chunk.data()) : 0;
+    const bool is_chunked = H5Pget_layout(creation) == H5D_CHUNKED;
+    const int rank = is_chunked ? H5Pget_chunk(creation, H5S_MAX_RANK, chunk.data()) : 0;
+    // The library would search for the end of such chunks without end.
+    if (is_chunked && rank != H5Sget_simple_extent_ndims(space)) fail("has chunks of another shape");
     for (int axis = 0; axis < rank; ++axis) {
       if (__builtin_mul_overflow(piece, chunk[static_cast<std::size_t>(axis)], &piece)) fail("has absurd chunks");
     }
