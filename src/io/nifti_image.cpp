@@ -103,19 +103,6 @@ std::size_t voxel_offset(const fs::path& path, const NiftiHeader& h) {
   return static_cast<std::size_t>(std::max(h.vox_offset, least));
 }
 
-void swap_bytes(std::byte* values, std::size_t count, std::size_t value_bytes) {
-  for (std::size_t n = 0; n < count; ++n) std::reverse(values + n * value_bytes, values + (n + 1) * value_bytes);
-}
-
-/// Refuses what the file cannot hold before memory is reserved for it: zlib compresses to 1/1032 at best.
-void require_plausible_size(const fs::path& path, const fs::path& file, double declared_bytes) {
-  constexpr double kMostCompression = 1032;
-  const auto present = static_cast<double>(fs::file_size(file));
-  if (declared_bytes <= kMostCompression * present) return;
-  throw IoError(in_quotes(path) + " is truncated or damaged: " + number_text(present) +
-                " bytes cannot hold the voxels that its header declares");
-}
-
 void read_values(const fs::path& path, const fs::path& file, std::size_t offset, std::byte* values, std::size_t bytes) {
   ZipFile zip(file);
   zip.skip(offset);
@@ -139,7 +126,7 @@ ImageFile read_nifti_image(const fs::path& path) {
   const fs::path file = header.is_single_file ? path : voxel_file(path);
   const std::array<std::size_t, 3> size = header.size();
   const std::size_t count = size[0] * size[1] * size[2], bytes = count * bytes_of(type);
-  require_plausible_size(path, file, static_cast<double>(bytes));
+  require_room_in_file(path, file, static_cast<double>(bytes));
 
   const bool in_place = bytes_of(type) == sizeof(Label);
   ImageFile result;

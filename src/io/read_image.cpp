@@ -19,10 +19,12 @@
 #include "io/image_geometry.h"
 #include "io/itk_session.h"
 #include "io/label_image_frame.h"
+#include "io/mgh_image.h"
 #include "io/muted_stderr.h"
 #include "io/nifti_header.h"
 #include "io/nifti_image.h"
 #include "io/output_file.h"
+#include "io/slicer_segments.h"
 #include "io/voxel_type.h"
 
 namespace anatomesh {
@@ -51,11 +53,14 @@ constexpr std::array<Component, 12> kComponents = {{{itk::IOComponentEnum::UCHAR
                                                     {itk::IOComponentEnum::FLOAT, NumberType::f32},
                                                     {itk::IOComponentEnum::DOUBLE, NumberType::f64}}};
 
-NumberType voxel_type_of(const fs::path& path, const itk::ImageIOBase& io) {
+void require_one_number_a_voxel(const fs::path& path, const itk::ImageIOBase& io) {
   if (io.GetNumberOfComponents() != 1 || io.GetPixelType() != itk::IOPixelEnum::SCALAR) {
     throw InvalidInput(in_quotes(path) + " has " + number_text(io.GetNumberOfComponents()) + " numbers a voxel (" +
                        itk::ImageIOBase::GetPixelTypeAsString(io.GetPixelType()) + "); one label a voxel is needed");
   }
+}
+
+NumberType voxel_type_of(const fs::path& path, const itk::ImageIOBase& io) {
   const auto found = std::find_if(kComponents.begin(), kComponents.end(),
                                   [&](const Component& c) { return c.component == io.GetComponentType(); });
   if (found != kComponents.end()) return found->type;
@@ -131,17 +136,56 @@ void refuse_segmentation_object(const fs::path& path, const itk::ImageIOBase& io
   throw InvalidInput(in_quotes(path) + " is a DICOM segmentation object; convert it to a label image, e.g. in NIfTI");
 }
 
-/// Reads all voxels of the file that io has the header of. place says where they belong.
-void read_voxels(const VoxelPlace& place, itk::ImageIOBase& io, Label* labels) {
-  const NumberType type = voxel_type_of(place.path, io);
-  const auto count = static_cast<std::size_t>(io.GetImageSizeInPixels());
+/// Reads all values of the file that io has the header of.
+void read_values(const fs::path& path, itk::ImageIOBase& io, void* values) {
   itk::ImageIORegion region(io.GetNumberOfDimensions());
   for (unsigned axis = 0; axis < io.GetNumberOfDimensions(); ++axis) region.SetSize(axis, io.GetDimensions(axis));
   io.SetIORegion(region);
+  call_itk(path, "its voxels cannot be read", [&] { io.Read(values); });
+}
+
+/// Reads all voxels of the file that io has the header of. place says where they belong.
+void read_voxels(const VoxelPlace& place, itk::ImageIOBase& io, Label* labels) {
+  const NumberType type = voxel_type_of(place.path, io);
+  require_one_number_a_voxel(place.path, io);
+  const auto count = static_cast<std::size_t>(io.GetImageSizeInPixels());
   std::vector<std::byte> buffer(bytes_of(type) == sizeof(Label) ? 0 : count * bytes_of(type));
   void* const values = buffer.empty() ? static_cast<void*>(labels) : buffer.data();
-  call_itk(place.path, "its voxels cannot be read", [&] { io.Read(values); });
+  read_values(place.path, io, values);
   store_voxels(place, type, {}, values, count, labels);
+}
+
+/// The keys of a NRRD file, among others.
+std::map<std::string, std::string> keys_of(const itk::ImageIOBase& io) {
+  std::map<std::string, std::string> keys;
+  const itk::MetaDataDictionary& dictionary = io.GetMetaDataDictionary();
+  for (const std::string& key : dictionary.GetKeys()) {
+    std::string text;
+    if (itk::ExposeMetaData<std::string>(dictionary, key, text)) keys[key] = text;
+  }
+  return keys;
+}
+
+/// Reads the layers of a segmentation into one image, a piece at a time. Returns what to tell the user.
+std::vector<std::string> read_layers(const fs::path& path, const std::vector<Segment>& segments, itk::ImageIOBase& io,
+                                     LabelImage& image) {
+  constexpr std::size_t kVoxelsAtOnce = std::size_t{1} << 14;
+  const NumberType type = voxel_type_of(path, io);
+  const std::size_t layers = io.GetNumberOfComponents(), count = image.voxels.size();
+  std::vector<std::byte> values(count * layers * bytes_of(type));
+  read_values(path, io, values.data());
+  LayerMerger merger(segments, layers);
+  std::vector<Label> piece(std::min(count, kVoxelsAtOnce) * layers);
+  for (std::size_t first = 0; first < count; first += kVoxelsAtOnce) {
+    const std::size_t voxels = std::min(kVoxelsAtOnce, count - first);
+    const std::byte* const from = values.data() + first * layers * bytes_of(type);
+    if (const auto bad = store_labels(type, from, voxels * layers, piece.data())) {
+      throw InvalidInput("layer " + number_text(bad->position % layers) + " of " + in_quotes(path) + " has the value " +
+                         bad->value + "; " + kLabelRule);
+    }
+    merger.merge(piece.data(), voxels, image.voxels.data() + first);
+  }
+  return merger.notes(path);
 }
 
 /// A compressed file cannot hold more than 1032 times its size (zlib), an uncompressed one no more than
@@ -169,7 +213,7 @@ itk::ImageIOBase::Pointer format_of(const fs::path& path) {
     throw IoError(in_quotes(path) + " is truncated, damaged or not in the format of its extension");
   }
   throw InvalidInput(in_quotes(path) +
-                     " is not an image in a known format; NIfTI, Analyze, NRRD, MetaImage, MINC and a folder "
+                     " is not an image in a known format; NIfTI, Analyze, NRRD, MetaImage, MINC, MGH and a folder "
                      "with a DICOM series can be read");
 }
 
@@ -188,10 +232,21 @@ ImageFile read_single_file(const fs::path& path, const ItkSession& itk_session) 
     check_dicom_pixels(path, size[0] * size[1] * size[2]);
   }
   const NumberType type = voxel_type_of(path, *io);
+  const std::size_t layers = io->GetNumberOfComponents();
+  const SegmentList list = segments_of(path, keys_of(*io), layers);
+  const bool is_layered = layers > 1 && !list.segments.empty();
+  if (!is_layered) require_one_number_a_voxel(path, *io);
   require_plausible_size(path, *io);
   ImageFile file;
-  file.image = blank_image(path, size, geometry_of(*io), bytes_of(type));
-  read_voxels({path, size}, *io, file.image.voxels.data());
+  file.image = blank_image(path, size, geometry_of(*io), layers * bytes_of(type));
+  file.image.names = list.names();
+  file.notes = list.notes;
+  if (is_layered) {
+    const std::vector<std::string> notes = read_layers(path, list.segments, *io, file.image);
+    file.notes.insert(file.notes.end(), notes.begin(), notes.end());
+  } else {
+    read_voxels({path, size}, *io, file.image.voxels.data());
+  }
   for (const std::string& warning : itk_session.warnings()) file.notes.push_back(in_quotes(path) + ": " + warning);
   return file;
 }
@@ -305,6 +360,7 @@ ImageFile read_dicom_series(const fs::path& folder) {
 
 ImageFile read_label_image(const fs::path& path) {
   require_readable(path);
+  if (fs::is_regular_file(path) && is_mgh_file(path)) return read_mgh_image(path);
   if (fs::is_regular_file(path) && is_nifti_file(path)) return read_nifti_image(path);
   const ItkSession itk_session;
   if (fs::is_directory(path)) return read_dicom_series(path);

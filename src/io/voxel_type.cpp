@@ -1,5 +1,6 @@
 #include "io/voxel_type.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 
@@ -47,6 +48,10 @@ const NumberFunctions& functions_of(NumberType type) { return kFunctions[static_
 }  // namespace
 
 std::size_t bytes_of(NumberType type) { return functions_of(type).bytes; }
+
+void swap_bytes(std::byte* values, std::size_t count, std::size_t value_bytes) {
+  for (std::size_t n = 0; n < count; ++n) std::reverse(values + n * value_bytes, values + (n + 1) * value_bytes);
+}
 
 std::optional<BadLabel> store_labels(NumberType type, const void* values, std::size_t count, Label* labels) {
   return functions_of(type).store(values, count, labels);

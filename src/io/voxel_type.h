@@ -22,6 +22,9 @@ struct ValueScale {
 /// Size of a number in bytes.
 std::size_t bytes_of(NumberType type);
 
+/// Turns the byte order of count values round.
+void swap_bytes(std::byte* values, std::size_t count, std::size_t value_bytes);
+
 /// As store_labels<Value>() in label_values.h.
 std::optional<BadLabel> store_labels(NumberType type, const void* values, std::size_t count, Label* labels);
 

@@ -7,9 +7,11 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "anatomesh/errors.h"
+#include "io/number_text.h"
 #include "io/output_file.h"
 
 namespace anatomesh {
@@ -58,5 +60,15 @@ class ZipFile {
   std::filesystem::path path_;
   std::unique_ptr<gzFile_s, int (*)(gzFile)> file_;
 };
+
+/// Throws IoError, about the image, where a file cannot hold so many bytes of voxels: zlib compresses to 1/1032 at
+/// best. To be asked before memory is reserved for them.
+inline void require_room_in_file(const std::filesystem::path& image, const std::filesystem::path& file, double bytes) {
+  constexpr double kMostCompression = 1032;
+  const auto present = static_cast<double>(std::filesystem::file_size(file));
+  if (bytes <= kMostCompression * present) return;
+  throw IoError(in_quotes(image) + " is truncated or damaged: " + number_text(present) +
+                " bytes cannot hold the voxels that its header declares");
+}
 
 }  // namespace anatomesh
