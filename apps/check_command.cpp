@@ -12,6 +12,7 @@
 #include "anatomesh/assess.h"
 #include "anatomesh/io.h"
 #include "apps/exit_status.h"
+#include "apps/images.h"
 #include "apps/json_report.h"
 #include "apps/label_list.h"
 #include "apps/mesh_options.h"
@@ -26,8 +27,8 @@ namespace {
 
 struct CheckRequest {
   std::filesystem::path mesh;
-  std::filesystem::path image;  ///< empty: none
-  std::filesystem::path json;   ///< empty: none
+  std::vector<std::filesystem::path> images;  ///< empty: none
+  std::filesystem::path json;                 ///< empty: none
   AssessOptions options;
   std::vector<LabelRange> ranges;  ///< empty: all labels
   bool no_distances = false;
@@ -44,8 +45,8 @@ void keep_labels(LabelImage& image, const std::vector<LabelRange>& ranges) {
 }
 
 std::optional<LabelImage> read_image(const CheckRequest& request) {
-  if (request.image.empty()) return std::nullopt;
-  ImageFile file = read_label_image(request.image);
+  if (request.images.empty()) return std::nullopt;
+  ImageFile file = read_images(request.images);
   if (!request.quiet)
     for (const std::string& note : file.notes) print_note(note);
   keep_labels(file.image, request.ranges);
@@ -60,7 +61,7 @@ void print_verdict(const std::vector<std::string>& failures) {
 int run_check(const CheckRequest& request, const Interrupt& interrupt) {
   require_text_output(request.json);
   require_different_files({request.json, request.mesh});
-  require_different_files({request.json, request.image});
+  for (const std::filesystem::path& image : request.images) require_different_files({request.json, image});
   ProgressBar bar(request.quiet ? Verbosity::quiet : Verbosity::normal);
   bar.show("read", 0);
   const TetMesh mesh = read_mesh(request.mesh);
@@ -71,10 +72,12 @@ int run_check(const CheckRequest& request, const Interrupt& interrupt) {
   const Assessment assessment = assess(mesh, image ? &*image : nullptr, options, bar.part(0.1, 1, interrupt.token()));
   bar.finish();
   const std::vector<std::string> failures = failed_guarantees(assessment, options);
+  LabelTable names = mesh.names;
+  if (image) names.insert(image->names.begin(), image->names.end());
   if (!request.json.empty())
-    write_text_file(request.json, check_json({request.mesh, request.image, options, assessment, failures}));
+    write_text_file(request.json, check_json({request.mesh, request.images, options, assessment, failures, names}));
   fmt::print("{}\n{}", field("mesh", request.mesh.string()),
-             assessment_tables(assessment, request.all_rows ? TissueRows::all : TissueRows::worst));
+             assessment_tables(assessment, request.all_rows ? TissueRows::all : TissueRows::worst, names));
   print_verdict(failures);
   return failures.empty() ? kDone : kCheckFailed;
 }
@@ -86,7 +89,8 @@ Command add_check_command(CLI::App& program) {
   const auto request = std::make_shared<CheckRequest>();
   command->add_option("MESH", request->mesh, "mesh to measure")->required();
   CLI::Option* image =
-      command->add_option("--image", request->image, "the segmented image it was made of")->type_name("IMAGE");
+      command->add_option("--image", request->images, "the segmented image it was made of, or its masks in their order")
+          ->type_name("IMAGE");
   command->add_option("--json", request->json, "write everything measured to this file")->type_name("FILE");
   add_frame_option(*command, request->options.frame);
   add_labels_option(*command, request->ranges).needs(image);

@@ -15,6 +15,7 @@
 #include "anatomesh/io.h"
 #include "apps/exit_status.h"
 #include "apps/label_list.h"
+#include "apps/label_names.h"
 #include "apps/text_table.h"
 
 namespace anatomesh::apps {
@@ -59,10 +60,14 @@ std::string image_table(const LabelImage& image, const LabelCounts& labels) {
   }
   text += field("axes", fmt::format("{}, {}", orientation(image.direction), handedness(image.direction)));
   text += field("labels", std::to_string(labels.size()));
+  std::vector<std::string> titles = {"label", "voxels", "volume ml"};
+  if (!image.names.empty()) titles.emplace_back(kNameTitle);
   std::vector<std::vector<std::string>> rows;
-  for (const auto& [label, voxels] : labels)
+  for (const auto& [label, voxels] : labels) {
     rows.push_back({std::to_string(label), grouped(voxels), fixed(static_cast<double>(voxels) * voxel_ml, 3)});
-  return text + "\n" + columns({"label", "voxels", "volume ml"}, rows);
+    if (!image.names.empty()) rows.back().push_back(shown_name(image.names, label));
+  }
+  return text + "\n" + columns(titles, rows);
 }
 
 int run_info(const std::filesystem::path& path) {

@@ -204,6 +204,34 @@ namespace {
 
 Json program() { return {{"name", "anatomesh"}, {"version", version()}}; }
 
+/// "file" for an image of one, "files" for one of several masks.
+Json files_json(const std::vector<std::filesystem::path>& paths) {
+  if (paths.size() == 1) return {{"file", paths.front().string()}};
+  Json files = Json::array();
+  for (const auto& path : paths) files.push_back(path.string());
+  return {{"files", files}};
+}
+
+/// Puts the name behind the label of each tissue; null where it is not known.
+Json with_names(const Json& tissues, const LabelTable& names) {
+  Json named = Json::array();
+  for (const Json& tissue : tissues) {
+    const auto label = tissue.at("label").get<Label>();
+    const auto entry = names.find(label);
+    Json changed = {{"label", label}, {"name", nullptr}};
+    if (entry != names.end() && !entry->second.name.empty()) changed["name"] = entry->second.name;
+    changed.update(tissue);
+    named.push_back(changed);
+  }
+  return named;
+}
+
+Json assessment_json(const Assessment& assessment, const LabelTable& names) {
+  Json json = assessment;
+  json["tissues"] = with_names(json["tissues"], names);
+  return json;
+}
+
 /// Text of a document; file names that are not UTF-8 lose their odd bytes rather than the report.
 std::string text_of(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
 
@@ -212,8 +240,9 @@ std::string text_of(const Json& json) { return json.dump(2, ' ', false, Json::er
 std::string mesh_report_json(const MeshReport& report) {
   const MeshSummary& summary = report.summary;
   const Result& result = *summary.result;
+  const LabelTable& names = report.image.image.names;
   Json image = report.image.image;
-  image["file"] = summary.image_file.string();
+  image.update(files_json(summary.image_files));
   image["notes"] = report.image.notes;
   const Json mesh = {{"file", summary.mesh_file.string()},
                      {"bytes", summary.mesh_bytes},
@@ -223,18 +252,18 @@ std::string mesh_report_json(const MeshReport& report) {
                   {"image", image},
                   {"mesh", mesh},
                   {"options", result.options},
-                  {"tissues", result.tissues},
+                  {"tissues", with_names(result.tissues, names)},
                   {"times", summary.times},
                   {"warnings", result.warnings},
-                  {"assessment", report.assessment}});
+                  {"assessment", assessment_json(report.assessment, names)}});
 }
 
 std::string check_json(const CheckReport& report) {
   Json json = {{"program", program()}, {"mesh", {{"file", report.mesh_file.string()}}}};
-  json["image"] = report.image_file.empty() ? Json() : Json{{"file", report.image_file.string()}};
+  json["image"] = report.image_files.empty() ? Json() : files_json(report.image_files);
   json["options"] = report.options;
   json["failed_guarantees"] = report.failures;
-  json["assessment"] = report.assessment;
+  json["assessment"] = assessment_json(report.assessment, report.names);
   return text_of(json);
 }
 

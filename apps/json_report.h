@@ -23,10 +23,11 @@ std::string mesh_report_json(const MeshReport& report);
 /// The report of `check`.
 struct CheckReport {
   const std::filesystem::path& mesh_file;
-  const std::filesystem::path& image_file;  ///< empty: none
+  const std::vector<std::filesystem::path>& image_files;  ///< empty: none
   const AssessOptions& options;
   const Assessment& assessment;
   const std::vector<std::string>& failures;
+  const LabelTable& names;
 };
 
 std::string check_json(const CheckReport& report);

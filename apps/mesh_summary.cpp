@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "apps/label_names.h"
 #include "apps/text_table.h"
 
 namespace anatomesh::apps {
@@ -19,11 +20,14 @@ std::string shell_quoted(const std::filesystem::path& path) {
   return quoted + "'";
 }
 
-/// "0.912 (label 23)": the tissue of the mesh whose value is worst.
-std::string worst(const std::vector<TissueOutcome>& tissues, double TissueOutcome::*value) {
+/// "0.912 (label 23, putamen)": the tissue of the mesh whose value is worst.
+std::string worst(const Result& result, double TissueOutcome::*value) {
+  const std::vector<TissueOutcome>& tissues = result.tissues;
   const auto at = std::min_element(tissues.begin(), tissues.end(),
                                    [&](const auto& a, const auto& b) { return a.*value < b.*value; });
-  return at == tissues.end() ? "-" : fmt::format("{} (label {})", fixed((*at).*value, 3), at->label);
+  if (at == tissues.end()) return "-";
+  const std::string name = shown_name(result.mesh.names, at->label);
+  return fmt::format("{} (label {}{}{})", fixed((*at).*value, 3), at->label, name.empty() ? "" : ", ", name);
 }
 
 /// "worst F1 0.951 (label 3), F2 0.912 (label 23); 2 of 41 tissues below their F". On the lattice
@@ -35,7 +39,7 @@ std::string fidelity_line(const Result& result) {
   const auto short_of =
       std::ranges::count_if(result.tissues, [&](const auto& t) { return std::min(t.*f1, t.*f2) < t.fidelity; });
   return fmt::format("{}worst F1 {}, F2 {}; {} of {} tissues below their F",
-                     final ? "" : "of the lattice: ", worst(result.tissues, f1), worst(result.tissues, f2), short_of,
+                     final ? "" : "of the lattice: ", worst(result, f1), worst(result, f2), short_of,
                      result.tissues.size());
 }
 
@@ -71,9 +75,10 @@ std::string mesh_table(const MeshSummary& summary) {
       field("in all",
             fmt::format("{:.1f} s, {} tetrahedra a second", total_s,
                         grouped(static_cast<std::uint64_t>(static_cast<double>(result.mesh.tets.size()) / total_s))));
+  std::string images;
+  for (const auto& file : summary.image_files) images += " " + shell_quoted(file);
   const char* frame = result.options.frame == Frame::lps ? "" : " --frame ras";
-  text += field("next", fmt::format("anatomesh check {} --image {}{}", shell_quoted(summary.mesh_file),
-                                    shell_quoted(summary.image_file), frame));
+  text += field("next", fmt::format("anatomesh check {} --image{}{}", shell_quoted(summary.mesh_file), images, frame));
   return text;
 }
 

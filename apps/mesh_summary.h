@@ -13,7 +13,7 @@ namespace anatomesh::apps {
 
 /// What `mesh` has to show for a run.
 struct MeshSummary {
-  std::filesystem::path image_file;
+  std::vector<std::filesystem::path> image_files;
   std::filesystem::path mesh_file;
   std::uint64_t mesh_bytes = 0;
   const Result* result = nullptr;

@@ -8,6 +8,7 @@
 #include <functional>
 #include <vector>
 
+#include "apps/label_names.h"
 #include "apps/text_table.h"
 
 namespace anatomesh::apps {
@@ -87,16 +88,21 @@ TissuePointers chosen_tissues(const Assessment& assessment, TissueRows rows) {
 }
 
 std::string tissue_table(const std::vector<TissueColumn>& shown, const TissueAssessment& whole,
-                         const TissuePointers& tissues) {
+                         const TissuePointers& tissues, const LabelTable& names) {
+  const bool has_names = std::ranges::any_of(
+      tissues, [&](const TissueAssessment* tissue) { return !shown_name(names, tissue->label).empty(); });
   std::vector<std::string> titles = {"tissue"};
+  if (has_names) titles.emplace_back(kNameTitle);
   for (const TissueColumn& column : shown) titles.emplace_back(column.title);
   std::vector<std::vector<std::string>> rows;
-  const auto add_row = [&](const std::string& name, const TissueAssessment& tissue) {
-    rows.push_back({name});
+  const auto add_row = [&](const std::string& label, const std::string& name, const TissueAssessment& tissue) {
+    rows.push_back({label});
+    if (has_names) rows.back().push_back(name);
     for (const TissueColumn& column : shown) rows.back().push_back(column.text(tissue));
   };
-  add_row("all", whole);
-  for (const TissueAssessment* tissue : tissues) add_row(std::to_string(tissue->label), *tissue);
+  add_row("all", "", whole);
+  for (const TissueAssessment* tissue : tissues)
+    add_row(std::to_string(tissue->label), shown_name(names, tissue->label), *tissue);
   return columns(titles, rows);
 }
 
@@ -179,14 +185,14 @@ std::string topology_lines(const Assessment& a) {
 
 }  // namespace
 
-std::string assessment_tables(const Assessment& assessment, TissueRows rows) {
+std::string assessment_tables(const Assessment& assessment, TissueRows rows, const LabelTable& names) {
   const TissuePointers tissues = chosen_tissues(assessment, rows);
   std::string heading;
   if (tissues.size() < assessment.tissues.size())
     heading = fmt::format("the {} worst of {} tissues by {} (--all shows all)\n", tissues.size(),
                           assessment.tissues.size(), assessment.has_image ? "Dice" : "angle");
   const auto section = [&](const char* name, const std::string& lines, const std::vector<TissueColumn>& shown) {
-    return fmt::format("{}\n{}\n{}{}\n", name, lines, heading, tissue_table(shown, assessment.whole, tissues));
+    return fmt::format("{}\n{}\n{}{}\n", name, lines, heading, tissue_table(shown, assessment.whole, tissues, names));
   };
   std::string text = section("QUALITY", quality_lines(assessment.whole.quality), quality_columns());
   if (assessment.has_image) text += section("FIDELITY", fidelity_lines(assessment), fidelity_columns());

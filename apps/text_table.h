@@ -20,7 +20,17 @@ std::string byte_size(std::uint64_t bytes);
 /// "name      value", the values below one another in all lines of a block.
 std::string field(std::string_view name, std::string_view value);
 
-/// Rows of cells below a row of titles, right-aligned columns; every row has as many cells as there are titles.
+/// Characters of a text in UTF-8.
+std::size_t character_count(std::string_view text);
+
+/// The text, or its beginning and "..." where it has more characters than that.
+std::string shortened_to(std::size_t most_characters, std::string_view text);
+
+/// The title of columns of names, which are left-aligned.
+inline constexpr const char* kNameTitle = "name";
+
+/// Rows of cells below a row of titles, right-aligned columns but for names; every row has as many cells as there are
+/// titles.
 std::string columns(const std::vector<std::string>& titles, const std::vector<std::vector<std::string>>& rows);
 
 }  // namespace anatomesh::apps
