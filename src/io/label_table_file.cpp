@@ -236,10 +236,8 @@ class TableReader {
   /// Finds the layout; whether the line is one of titles, with no label in it.
   bool begin(const Line& line) {
     const char separator = separator_of(trimmed(line.text));
-    if (is_snap(words_of(line))) {
-      layout_ = kSnap;
-    } else if (separator == ' ') {
-      layout_ = kColourTable;
+    if (separator == ' ') {
+      layout_ = is_snap(words_of(line)) ? kSnap : kColourTable;
     } else if (const auto titled = titled_layout(separated_fields(line, separator), separator)) {
       layout_ = titled;
       return true;

@@ -217,6 +217,27 @@ itk::ImageIOBase::Pointer format_of(const fs::path& path) {
                      "with a DICOM series can be read");
 }
 
+/// Reads the voxels of a file that io has the header of.
+ImageFile read_image_or_layers(const fs::path& path, std::array<std::size_t, 3> size, itk::ImageIOBase& io) {
+  const NumberType type = voxel_type_of(path, io);
+  const std::size_t layers = io.GetNumberOfComponents();
+  const SegmentList list = segments_of(path, keys_of(io), layers);
+  const bool is_layered = !list.segments.empty() && io.GetPixelType() != itk::IOPixelEnum::SCALAR;
+  if (!is_layered) require_one_number_a_voxel(path, io);
+  require_plausible_size(path, io);
+  ImageFile file;
+  file.image = blank_image(path, size, geometry_of(io), layers * bytes_of(type));
+  file.image.names = list.names();
+  file.notes = list.notes;
+  if (is_layered) {
+    const std::vector<std::string> notes = read_layers(path, list.segments, io, file.image);
+    file.notes.insert(file.notes.end(), notes.begin(), notes.end());
+  } else {
+    read_voxels({path, size}, io, file.image.voxels.data());
+  }
+  return file;
+}
+
 ImageFile read_single_file(const fs::path& path, const ItkSession& itk_session) {
   check_before_itk(path);
   std::optional<MutedStderr> muted;
@@ -231,22 +252,7 @@ ImageFile read_single_file(const fs::path& path, const ItkSession& itk_session) 
     }
     check_dicom_pixels(path, size[0] * size[1] * size[2]);
   }
-  const NumberType type = voxel_type_of(path, *io);
-  const std::size_t layers = io->GetNumberOfComponents();
-  const SegmentList list = segments_of(path, keys_of(*io), layers);
-  const bool is_layered = layers > 1 && !list.segments.empty();
-  if (!is_layered) require_one_number_a_voxel(path, *io);
-  require_plausible_size(path, *io);
-  ImageFile file;
-  file.image = blank_image(path, size, geometry_of(*io), layers * bytes_of(type));
-  file.image.names = list.names();
-  file.notes = list.notes;
-  if (is_layered) {
-    const std::vector<std::string> notes = read_layers(path, list.segments, *io, file.image);
-    file.notes.insert(file.notes.end(), notes.begin(), notes.end());
-  } else {
-    read_voxels({path, size}, *io, file.image.voxels.data());
-  }
+  ImageFile file = read_image_or_layers(path, size, *io);
   for (const std::string& warning : itk_session.warnings()) file.notes.push_back(in_quotes(path) + ": " + warning);
   return file;
 }

@@ -35,7 +35,7 @@ std::string option_of(const std::string& member) {
 
 TEST(OptionNames, are_the_members_of_the_option_structs) {
   // --tissue sets both members of a material from a table.
-  const std::set<std::string> own = {"--help", "--output", "--report", "--quiet", "--verbose", "--tissue"};
+  const std::set<std::string> own = {"--help", "--output", "--report", "--quiet", "--verbose", "--tissue", "--names"};
   std::set<std::string> expected = own;
   const std::set<std::string> members = option_members();
   ASSERT_GE(members.size(), 15u) << "the header was not understood";
