@@ -7,13 +7,11 @@ packages=(
   # to build
   g++ make cmake ninja-build
   libinsighttoolkit5-dev libvtk9-dev libtbb-dev libeigen3-dev libnanoflann-dev
-  libcli11-dev nlohmann-json3-dev libfmt-dev libpugixml-dev zlib1g-dev
-  libcli11-dev nlohmann-json3-dev libfmt-dev zlib1g-dev
-  libhdf5-dev libpugixml-dev
+  libcli11-dev nlohmann-json3-dev libfmt-dev libhdf5-dev libpugixml-dev zlib1g-dev
   # to test
   libgtest-dev clang-format libbenchmark-dev valgrind pkg-config dpkg-dev file
-  calculix-ccx python3-meshio tetgen
-  libgtest-dev clang-format libbenchmark-dev valgrind gmsh python3-meshio
+  # programs that are not ours, to read what we write
+  calculix-ccx gmsh tetgen python3-h5py python3-meshio python3-nibabel
   # for the demo: the images, and pictures without a display
   mricron-data python3 python3-vtk9 python3-numpy xvfb xauth libgl1-mesa-dri
   "$@"
