@@ -23,16 +23,17 @@ struct ImageFile {
   std::vector<std::string> notes;  ///< sentences for the user, e.g. which of two NIfTI geometries was used
 };
 
-/// Reads a 3D label image: NIfTI, Analyze, NRRD, MetaImage, MINC, FreeSurfer's MGH, or a folder with one DICOM series.
+/// Reads a 3D label image: NIfTI, Analyze, NRRD, MetaImage, MINC, FreeSurfer's MGH, a binary DICOM segmentation object,
+/// or a folder with one DICOM series.
 /// Voxels may be integers of 8 to 64 bits, or floats that are all integral; labels from 0 to 2^32 - 1
 /// are kept exactly. Trailing dimensions of size 1 are dropped.
 /// NIfTI: the sform where its code is > 0 and it is a rotation (possibly with a reflection) times the
 /// spacing, else the qform, with the spacing of that form; other units than mm are converted.
-/// NRRD with the keys of a 3D Slicer segmentation: with names and colours; overlapping segments become one image, where
-/// the later segment wins. DICOM slices must be evenly spaced. Analyze files and NIfTI files with neither form do not
-/// say where they lie: their axes are taken as LPS, their origin as 0. Memory: the labels, plus up to two copies of the
-/// voxels in the type of the file (none for NIfTI files of 32-bit voxels). Speed: that of zlib. Throws IoError
-/// (missing, unreadable, truncated) or InvalidInput (readable, but no such label image).
+/// Segmentations of 3D Slicer (NRRD with its keys) and in DICOM come with names; where their segments overlap the later
+/// one wins, and a note says in how many voxels. DICOM slices must be evenly spaced. Analyze files and NIfTI files with
+/// neither form do not say where they lie: their axes are taken as LPS, their origin as 0. Memory: the labels, plus up
+/// to two copies of the voxels in the type of the file (none for NIfTI files of 32-bit voxels). Speed: that of zlib.
+/// Throws IoError (missing, unreadable, truncated) or InvalidInput (readable, but no such label image).
 ImageFile read_label_image(const std::filesystem::path& path);
 
 /// Reads masks of one grid, images with one value beside 0 each, into one image: the first mask is labelled 1, the

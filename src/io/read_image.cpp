@@ -15,6 +15,7 @@
 #include "anatomesh/errors.h"
 #include "anatomesh/io.h"
 #include "base/vec.h"
+#include "io/dicom_segmentation.h"
 #include "io/file_checks.h"
 #include "io/image_geometry.h"
 #include "io/itk_session.h"
@@ -133,7 +134,9 @@ void refuse_segmentation_object(const fs::path& path, const itk::ImageIOBase& io
   std::string modality;
   itk::ExposeMetaData<std::string>(io.GetMetaDataDictionary(), "0008|0060", modality);
   if (modality.substr(0, 3) != "SEG") return;
-  throw InvalidInput(in_quotes(path) + " is a DICOM segmentation object; convert it to a label image, e.g. in NIfTI");
+  throw InvalidInput(in_quotes(path) +
+                     " is a DICOM segmentation object; name a binary one itself, not its folder, or "
+                     "convert it to a label image, e.g. in NIfTI");
 }
 
 /// Reads all values of the file that io has the header of.
@@ -368,6 +371,7 @@ ImageFile read_label_image(const fs::path& path) {
   require_readable(path);
   if (fs::is_regular_file(path) && is_mgh_file(path)) return read_mgh_image(path);
   if (fs::is_regular_file(path) && is_nifti_file(path)) return read_nifti_image(path);
+  if (fs::is_regular_file(path) && is_dicom_segmentation(path)) return read_dicom_segmentation(path);
   const ItkSession itk_session;
   if (fs::is_directory(path)) return read_dicom_series(path);
   return read_single_file(path, itk_session);
