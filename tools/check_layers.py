@@ -30,6 +30,7 @@ FENCES = [
     ("CGAL", re.compile(r"^CGAL/"), ("benchmarks",)),
     ("CLI11", re.compile(r"^CLI/"), ("apps", "benchmarks")),
     ("JSON", re.compile(r"^nlohmann/"), ("apps", "benchmarks")),
+    ("pybind11", re.compile(r"^pybind11/"), ("bindings/python",)),
     ("fmt", re.compile(r"^(fmt|spdlog)/"), ("apps",)),
 ]
 

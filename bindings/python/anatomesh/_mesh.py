@@ -1,0 +1,237 @@
+"""Labelled tetrahedral meshes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Mapping, Optional
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._image import Matrix, Progress, Triple, label_image
+from .errors import InvalidInput
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+# Names that meshes of other programs give to the array of their labels, ours first.
+_LABEL_ARRAYS = ("label", "labels", "medit:ref", "gmsh:physical", "material")
+
+
+@dataclass(frozen=True)
+class TissueOutcome:
+    """What became of one tissue of the image."""
+
+    label: int
+    voxels: int  #: in the image
+    tets: int  #: in the mesh; 0: the tissue could not be represented
+    fidelity: float  #: the F asked for
+    lattice_f1: float  #: F1 reached on the undeformed lattice (0 to 1)
+    lattice_f2: float  #: F2 reached on the undeformed lattice (0 to 1)
+    f1: float  #: F1 of the final mesh (0 to 1)
+    f2: float  #: F2 of the final mesh (0 to 1)
+
+
+@dataclass(frozen=True, eq=False)
+class Interface:
+    """The faces between the tetrahedra of two labels, or between one label and the outside."""
+
+    inside: int  #: the smaller label; the faces are those of its tetrahedra
+    outside: int  #: the larger one; 0: nothing, the faces lie on the skin
+    triangles: npt.NDArray[np.uint32]  #: (n, 3): vertices, anticlockwise as seen from outside
+    tets: npt.NDArray[np.uint32]  #: (n,): the tetrahedron of each face, ascending
+    opposite: npt.NDArray[np.uint8]  #: (n,): the corner (0 to 3) of that tetrahedron that the face lies opposite to
+
+
+class Mesh:
+    """A conforming tetrahedral mesh.
+
+    `points`, `tets` and `labels` are read-only views of the mesh itself, which they keep alive; nothing is copied.
+    Every tetrahedron (a, b, c, d) of a mesh made by this package has a positive volume, (b-a) x (c-a) . (d-a) / 6.
+    """
+
+    #: Outcome of every tissue of the image, by label. Empty where the mesh was not made by this package.
+    tissues: dict[int, TissueOutcome]
+    #: Sentences for the user, e.g. a tissue that could not be represented.
+    warnings: list[str]
+    #: Wall-clock seconds of each stage.
+    times: dict[str, float]
+    #: The options as used: sizes that were 0 are filled in.
+    options: dict[str, Any]
+
+    def __init__(
+        self,
+        points: npt.ArrayLike,
+        tets: npt.ArrayLike,
+        labels: Optional[npt.ArrayLike] = None,
+        names: Optional[Mapping[int, str]] = None,
+    ) -> None:
+        """A mesh of arrays, which are copied: (n, 3) points in mm, (m, 4) vertices, (m,) labels (all 1 without)."""
+        tets = _whole_numbers("tets", tets)
+        labels = np.ones(len(tets), np.uint32) if labels is None else _whole_numbers("labels", labels)
+        self._mesh = _core.TetMesh(np.asarray(points, np.float64), tets, labels, dict(names or {}))
+        self._describe({})
+
+    @classmethod
+    def _made(cls, result: Mapping[str, Any]) -> Mesh:
+        mesh = cls.__new__(cls)
+        mesh._mesh = result["mesh"]
+        mesh._describe(result)
+        return mesh
+
+    def _describe(self, result: Mapping[str, Any]) -> None:
+        self.tissues = {tissue["label"]: TissueOutcome(**tissue) for tissue in result.get("tissues", ())}
+        self.warnings = result.get("warnings", [])
+        self.times = result.get("times", {})
+        self.options = result.get("options", {})
+
+    @property
+    def points(self) -> npt.NDArray[np.float64]:
+        """(n, 3) float64: vertices in millimetres, in the frame of the options (LPS unless asked for RAS)."""
+        return self._mesh.points
+
+    @property
+    def tets(self) -> npt.NDArray[np.uint32]:
+        """(m, 4) uint32: the vertices of each tetrahedron."""
+        return self._mesh.tets
+
+    @property
+    def labels(self) -> npt.NDArray[np.uint32]:
+        """(m,) uint32: the tissue of each tetrahedron."""
+        return self._mesh.labels
+
+    @property
+    def names(self) -> dict[int, str]:
+        """What labels stand for, where that is known."""
+        return self._mesh.names
+
+    def interfaces(self) -> list[Interface]:
+        """The surfaces where two tissues meet and the outer skin, each face once, sorted by inside, then outside."""
+        return [Interface(*arrays) for arrays in _core.interfaces_of(self._mesh)]
+
+    def assess(
+        self,
+        image: Any = None,
+        /,
+        *,
+        spacing: Optional[Triple] = None,
+        origin: Optional[Triple] = None,
+        direction: Optional[Matrix] = None,
+        affine: Optional[Matrix] = None,
+        labels: Optional[Sequence[int]] = None,
+        frame: Optional[str] = None,
+        distances: bool = True,
+        min_dihedral_deg: Optional[float] = None,
+        max_dihedral_deg: Optional[float] = None,
+        min_mean_ratio: Optional[float] = None,
+        progress: Optional[Progress] = None,
+    ) -> dict[str, Any]:
+        """Measures the mesh, against the image it was made of if that is given (as mesh() takes it).
+
+        Returns what `anatomesh check --json` writes under "assessment" (None for what was not measured), and
+        "failed_guarantees", one sentence for each. `labels` (the rest of the image is background), `frame` and the
+        bounds are those that the mesh was made with unless given. Surface distances take most of the time.
+        """
+        voxels = None
+        if image is not None:
+            voxels = label_image(image, None, spacing, origin, direction, affine)
+            kept = list(self.options.get("labels", ()) if labels is None else labels)
+            if kept:
+                voxels.keep_labels(kept)
+
+        def own(name: str, given: Any) -> Any:
+            return self.options.get(name, _core.default_options()[name]) if given is None else given
+
+        return _core.assess(
+            self._mesh,
+            voxels,
+            own("frame", frame),
+            distances,
+            own("min_dihedral_deg", min_dihedral_deg),
+            own("max_dihedral_deg", max_dihedral_deg),
+            own("min_mean_ratio", min_mean_ratio),
+            progress,
+        )
+
+    def to_meshio(self) -> Any:
+        """A meshio.Mesh with the cell data "label", whose write() knows many formats.
+
+        Names go into field_data, as Gmsh has them: {name: [label, 3]}.
+        """
+        import meshio
+
+        return meshio.Mesh(
+            self.points,
+            [("tetra", self.tets)],
+            cell_data={"label": [self.labels]},
+            field_data={name: np.array([label, 3]) for label, name in self.names.items()},
+        )
+
+    def to_pyvista(self) -> Any:
+        """A pyvista.UnstructuredGrid with the cell data "label"; names are in field_data, as in our .vtu files."""
+        import pyvista
+
+        grid = pyvista.UnstructuredGrid({pyvista.CellType.TETRA: self.tets.astype(np.int64)}, np.array(self.points))
+        grid.cell_data["label"] = np.array(self.labels)
+        if self.names:
+            grid.field_data["label_values"] = np.array(list(self.names), np.uint32)
+            grid.field_data["label_names"] = list(self.names.values())
+        return grid
+
+    @classmethod
+    def from_meshio(cls, mesh: Any, label: Optional[str] = None) -> Mesh:
+        """The linear tetrahedra of a meshio.Mesh, in its order and orientation.
+
+        Labels come from the cell data of the name `label`; unless given, of the first of "label", "labels",
+        "medit:ref", "gmsh:physical" and "material" that is there; without any, all labels are 1.
+        """
+        blocks = [n for n, block in enumerate(mesh.cells) if block.type == "tetra"]
+        if not blocks:
+            raise InvalidInput("the mesh has no cells of type 'tetra'; linear tetrahedra are needed")
+        tets = np.concatenate([mesh.cells[n].data for n in blocks])
+        name = label or next((known for known in _LABEL_ARRAYS if known in mesh.cell_data), None)
+        if name is None:
+            return cls(mesh.points, tets)
+        if name not in mesh.cell_data:
+            raise InvalidInput(f"the mesh has no cell data '{name}'; it has {sorted(mesh.cell_data)}")
+        labels = np.concatenate([mesh.cell_data[name][n] for n in blocks])
+        return cls(mesh.points, tets, labels, _names_of_meshio(mesh))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        described = {
+            "tissues": [vars(tissue) for tissue in self.tissues.values()],
+            "warnings": self.warnings,
+            "times": self.times,
+            "options": self.options,
+        }
+        return _remade, (np.array(self.points), np.array(self.tets), np.array(self.labels), self.names, described)
+
+    def __repr__(self) -> str:
+        return (
+            f"<anatomesh.Mesh: {len(self.points)} vertices, {len(self.tets)} tetrahedra, "
+            f"{len(np.unique(self.labels))} labels>"
+        )
+
+
+def _names_of_meshio(mesh: Any) -> dict[int, str]:
+    """The names of volumes as Gmsh has them, of anything else in field_data nothing."""
+    entries = ((name, np.atleast_1d(entry)) for name, entry in mesh.field_data.items())
+    return {int(e[0]): name for name, e in entries if e.shape == (2,) and e.dtype.kind in "iu" and e[1] == 3}
+
+
+def _whole_numbers(name: str, given: npt.ArrayLike) -> npt.NDArray[np.uint32]:
+    numbers = np.asarray(given)
+    with np.errstate(invalid="ignore"):
+        whole = numbers.astype(np.uint32)
+    if numbers.dtype.kind not in "biuf" or not np.array_equal(whole, numbers):
+        raise InvalidInput(f"{name} holds other than whole numbers from 0 to 4294967295")
+    return whole
+
+
+def _remade(
+    points: npt.ArrayLike, tets: npt.ArrayLike, labels: npt.ArrayLike, names: dict[int, str], described: dict[str, Any]
+) -> Mesh:
+    mesh = Mesh(points, tets, labels, names)
+    mesh._describe(described)
+    return mesh

@@ -1,0 +1,16 @@
+// The extension module. What users see is the Python beside it, in anatomesh/.
+#include <pybind11/pybind11.h>
+
+#include "assessment.h"
+#include "errors.h"
+#include "meshing.h"
+#include "tet_mesh.h"
+
+PYBIND11_MODULE(_core, module) {
+  namespace python = anatomesh::python;
+  module.attr("version") = ANATOMESH_VERSION;
+  python::translate_errors();
+  python::bind_tet_mesh(module);
+  python::bind_meshing(module);
+  python::bind_assess(module);
+}
