@@ -6,6 +6,7 @@
 
 #include "anatomesh/errors.h"
 #include "base/parallel.h"
+#include "base/rotation.h"
 #include "base/sort_and_unify.h"
 #include "base/vec.h"
 
@@ -115,7 +116,9 @@ TissueMesh make_tissue_mesh(const TetMesh& mesh, const std::vector<Label>& image
 }
 
 std::vector<Vec3> to_index_space(std::span<const Vec3> points_mm, const LabelImage& image, Frame frame) {
-  const Mat3& d = image.direction;
+  // Where the mesher lays an image whose direction is rounded.
+  const bool is_rotation = deviation_from_orthonormal(image.direction) <= kDirectionTolerance;
+  const Mat3 d = is_rotation ? nearest_orthonormal(image.direction) : image.direction;
   const auto column = [&](std::size_t c) { return Vec3{d[0][c], d[1][c], d[2][c]}; };
   const double scale = 1 / determinant(d);
   const std::array<Vec3, 3> inverse = {scale * cross(column(1), column(2)), scale * cross(column(2), column(0)),

@@ -55,6 +55,14 @@ TEST(Rotation, NearestOfARotationIsItself) {
   }
 }
 
+TEST(Rotation, NearestOfANearestIsTheSameToTheLastBit) {
+  double by = 3e-4;
+  for (int n = 0; n < 1000; ++n, by *= 0.97) {
+    const Mat3 nearest = nearest_orthonormal(disturbed(oblique_direction(), by));
+    EXPECT_EQ(nearest_orthonormal(nearest), nearest) << by;
+  }
+}
+
 TEST(Rotation, NearestIsOrthonormalAndNear) {
   for (const double by : {1e-9, 1e-6, 1e-4, 3e-4}) {
     const Mat3 matrix = disturbed(oblique_direction(), by);
