@@ -163,7 +163,7 @@ class Mesh:
 
         return meshio.Mesh(
             self.points,
-            [("tetra", self.tets)],
+            [("tetra", self.tets.astype(np.int64))],  # as meshio's writers expect
             cell_data={"label": [self.labels]},
             field_data={name: np.array([label, 3]) for label, name in self.names.items()},
         )
@@ -171,12 +171,17 @@ class Mesh:
     def to_pyvista(self) -> Any:
         """A pyvista.UnstructuredGrid with the cell data "label"; names are in field_data, as in our .vtu files."""
         import pyvista
+        from vtkmodules.vtkCommonCore import vtkStringArray
 
         grid = pyvista.UnstructuredGrid({pyvista.CellType.TETRA: self.tets.astype(np.int64)}, np.array(self.points))
         grid.cell_data["label"] = np.array(self.labels)
         if self.names:
             grid.field_data["label_values"] = np.array(list(self.names), np.uint32)
-            grid.field_data["label_names"] = list(self.names.values())
+            names = vtkStringArray()  # pyvista's own takes ASCII only
+            names.SetName("label_names")
+            for name in self.names.values():
+                names.InsertNextValue(name)
+            grid.GetFieldData().AddArray(names)
         return grid
 
     @classmethod
