@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "anatomesh/io.h"
 #include "apps/exit_status.h"
@@ -21,20 +22,31 @@ struct ConvertRequest {
   std::filesystem::path in;
   std::filesystem::path out;
   std::filesystem::path names;  ///< empty: none
+  bool per_tissue = false;
 };
 
+/// Writes the mesh, or the surface of each tissue; returns the files.
+std::vector<std::filesystem::path> write(const ConvertRequest& request, const TetMesh& mesh) {
+  if (request.per_tissue) return write_tissue_surfaces(request.out, mesh);
+  write_mesh(request.out, mesh);
+  return {request.out};
+}
+
 int run_convert(const ConvertRequest& request, const Interrupt& interrupt) {
-  require_mesh_output(request.out);
+  request.per_tissue ? require_surface_output(request.out) : require_mesh_output(request.out);
   require_different_files({request.names, request.out});
   const LabelTable names = read_names(request.names);
   TetMesh mesh = read_mesh(request.in);
   const std::size_t named = take_names(mesh.names, names, {mesh.labels.begin(), mesh.labels.end()});
   const std::string warning = foreign_table(request.names, named, quoted({request.in}));
   interrupt.throw_if_requested();
-  write_mesh(request.out, mesh);
+  const std::vector<std::filesystem::path> files = write(request, mesh);
   if (!warning.empty()) print_warning(warning);
-  fmt::print("{}", field("mesh", fmt::format("{}, {}", request.out.string(), byte_size(size_on_disk(request.out)))) +
-                       field("tetrahedra", grouped(mesh.tets.size())));
+  for (const std::filesystem::path& file : files) {
+    fmt::print("{}", field(request.per_tissue ? "surface" : "mesh",
+                           fmt::format("{}, {}", file.string(), byte_size(size_on_disk(file)))));
+  }
+  fmt::print("{}", field("tetrahedra", grouped(mesh.tets.size())));
   return kDone;
 }
 
@@ -44,8 +56,10 @@ Command add_convert_command(CLI::App& program) {
   CLI::App* command = program.add_subcommand("convert", "Rewrite a mesh in the format of another extension");
   const auto request = std::make_shared<ConvertRequest>();
   command->add_option("MESH", request->in, "mesh to read")->required();
-  command->add_option("OUT", request->out, "mesh to write")->required();
   add_names_option(*command, request->names);
+  command->add_option("OUT", request->out, "mesh to write; .stl, .ply, .obj and .vtp hold its surfaces")->required();
+  command->add_flag("--per-tissue", request->per_tissue,
+                    "one closed surface a tissue: OUT.stl stands for OUT_NAME.stl, or OUT_label_7.stl without a name");
   return {command, [request](const Interrupt& interrupt) { return run_convert(*request, interrupt); }};
 }
 

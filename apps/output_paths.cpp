@@ -5,13 +5,21 @@
 
 namespace anatomesh::apps {
 
-void require_mesh_output(const std::filesystem::path& path) {
+namespace {
+
+/// What is wrong with the path is wrong with an option.
+void require(void (*check)(const std::filesystem::path&), const std::filesystem::path& path) {
   try {
-    check_mesh_writable(path);
+    check(path);
   } catch (const InvalidInput& error) {
     throw InvalidOption(error.what());
   }
 }
+
+}  // namespace
+
+void require_mesh_output(const std::filesystem::path& path) { require(&check_mesh_writable, path); }
+void require_surface_output(const std::filesystem::path& path) { require(&check_tissue_surfaces_writable, path); }
 
 void require_text_output(const std::filesystem::path& path) {
   if (!path.empty()) check_writable(path);

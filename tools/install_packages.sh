@@ -12,6 +12,8 @@ packages=(
   libgtest-dev clang-format libbenchmark-dev valgrind pkg-config dpkg-dev file
   # programs that are not ours, to read what we write
   calculix-ccx gmsh tetgen python3-h5py python3-meshio python3-nibabel
+  libgtest-dev clang-format libbenchmark-dev valgrind
+  python3-h5py python3-meshio
   # for the demo: the images, and pictures without a display
   mricron-data python3 python3-vtk9 python3-numpy xvfb xauth libgl1-mesa-dri
   "$@"

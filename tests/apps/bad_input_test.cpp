@@ -225,6 +225,7 @@ TEST(WrongUsage, of_commands_ends_with_status_2) {
       {{"convert", "mesh.vtu"}, {"OUT"}},
       {{"convert", "mesh.vtu", "mesh.docx"}, {"mesh.docx", ".vtu"}},
       {{"convert", "mesh.vtu", "out.vtu", "--names"}, {"--names"}},
+      {{"convert", "mesh.vtu", "mesh.vtk", "--per-tissue"}, {"mesh.vtk", ".stl"}},
       {{"check"}, {"MESH"}},
       {{"check", "mesh.vtu", "--labels", "1"}, {"--image"}},
       {{"check", "mesh.vtu", "--min-dihedral", "steep"}, {"--min-dihedral", "steep"}},

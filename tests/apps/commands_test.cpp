@@ -158,6 +158,18 @@ TEST_F(MeshAndCheck, convert_keeps_all) {
   EXPECT_TRUE(a.labels == b.labels);
 }
 
+TEST_F(MeshAndCheck, convert_writes_a_surface_a_tissue) {
+  ASSERT_EQ(mesh({}).status, 0);
+  const ProcessResult converted = run_program({"convert", mesh_, folder_ / "ball.stl", "--per-tissue"});
+  EXPECT_EQ(converted.status, 0) << converted.err;
+  for (const Label label : labels_of_mesh()) {
+    const std::string name = "ball_label_" + std::to_string(label) + ".stl";
+    EXPECT_TRUE(contains(converted.out, name)) << converted.out;
+    EXPECT_TRUE(fs::exists(folder_ / name)) << name;
+  }
+  EXPECT_FALSE(fs::exists(folder_ / "ball.stl"));
+}
+
 TEST_F(MeshAndCheck, an_output_is_never_an_input_or_another_output) {
   const std::string before = read_file(image_);
   const std::string link = folder_ / "link.vtu";
