@@ -12,6 +12,7 @@
 
 #include "anatomesh/errors.h"
 #include "io/cell_arrays.h"
+#include "io/hdf5_layout.h"
 #include "io/number_text.h"
 #include "io/output_file.h"
 
@@ -174,6 +175,12 @@ namespace {
 
 constexpr std::uint64_t kMostInflation = 1100;  // of deflate, which ends at 1032
 
+hid_t open_dataset(const std::filesystem::path& path, hid_t file, hid_t access, const std::string& dataset) {
+  H5O_info_t info;
+  if (H5Oget_info_by_name2(file, dataset.c_str(), &info, H5O_INFO_BASIC, access) < 0) return H5I_INVALID_HID;
+  return has_empty_chunks(path, info.addr) ? H5I_INVALID_HID : H5Dopen2(file, dataset.c_str(), access);
+}
+
 /// A dataset of a file, looked at before it is read.
 struct OpenedDataset {
   const std::filesystem::path& path;
@@ -186,7 +193,7 @@ struct OpenedDataset {
   OpenedDataset(const std::filesystem::path& in, hid_t file, hid_t access, const std::string& dataset)
       : path(in),
         name(dataset),
-        set(H5Dopen2(file, dataset.c_str(), access), &H5Dclose),
+        set(open_dataset(in, file, access, dataset), &H5Dclose),
         type(H5Dget_type(set), &H5Tclose),
         space(H5Dget_space(set), &H5Sclose),
         creation(H5Dget_create_plist(set), &H5Pclose) {

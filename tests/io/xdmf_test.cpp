@@ -175,6 +175,22 @@ TEST_F(Xdmf, DamagedHdfNeverCrashes) {
   }
 }
 
+// libhdf5 1.10 divides by both.
+TEST_F(Xdmf, ChunksWithoutSizeAreRefused) {
+  write_mesh(in_folder("mesh.xdmf"), two_tets());
+  const std::string bytes = bytes_of(in_folder("mesh.h5"));
+  // A layout message of version 3: chunked, three dimensions; then an address and the dimensions.
+  const std::string head = {8, 0, 24, 0, 0, 0, 0, 0, 3, 2, 3};
+  const std::size_t at = bytes.find(head);
+  ASSERT_NE(at, std::string::npos);
+  for (const std::size_t damaged_at : {at + 10, at + 19}) {
+    std::string damaged = bytes;
+    damaged[damaged_at] = 0;
+    put("mesh.h5", damaged);
+    EXPECT_SAYS(message_of<IoError>("mesh.h5", [&] { read_mesh(in_folder("mesh.xdmf")); }), "cannot be opened");
+  }
+}
+
 TEST_F(Xdmf, CutHdfIsRefused) {
   write_mesh(in_folder("mesh.xdmf"), two_tets());
   const std::string bytes = bytes_of(in_folder("mesh.h5"));
