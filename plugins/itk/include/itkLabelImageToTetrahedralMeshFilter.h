@@ -44,8 +44,10 @@ class ITK_TEMPLATE_EXPORT LabelImageToTetrahedralMeshFilter : public ImageToMesh
   static_assert(TInputImage::ImageDimension == 3, "a label image of three dimensions is needed");
   static_assert(std::is_integral_v<typename TInputImage::PixelType>, "labels are integers");
 
+  // clang-format off
   itkNewMacro(Self)
   itkTypeMacro(LabelImageToTetrahedralMeshFilter, ImageToMeshFilter);
+  // clang-format on
 
   using Superclass::SetInput;
   void SetInput(const InputImageType* image);
