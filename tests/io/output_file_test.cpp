@@ -119,8 +119,8 @@ TEST_F(OutputFiles, WritablePlacesLeaveNoTrace) {
 TEST_F(OutputFiles, UnknownExtensionsAreRefused) {
   for (const char* name : {"mesh", "mesh.xyz", "mesh.vtu.gz", ".vtu"}) {
     const auto file = in_folder(name);
-    EXPECT_SAYS(message_of<InvalidInput>(file, [&] { check_mesh_writable(file); }), ".vtu");
-    EXPECT_SAYS(message_of<InvalidInput>(file, [&] { write_mesh(file, one_tet()); }), ".vtu");
+    EXPECT_SAYS(message_of<InvalidInput>(file, [&] { check_mesh_writable(file); }), "extension must be .vtu, .vtk");
+    EXPECT_SAYS(message_of<InvalidInput>(file, [&] { write_mesh(file, one_tet()); }), "extension must be .vtu, .vtk");
   }
   for (const char* name : {"image", "image.xyz", "image.mhd", "image.hdr"}) {
     const auto image = in_folder(name);
