@@ -52,18 +52,19 @@ LabelTable read_label_table(const std::filesystem::path& path);
 /// Throws IoError, InvalidInput (unknown extension, or a format that cannot hold the image).
 void write_label_image(const std::filesystem::path& path, const LabelImage& image);
 
-/// Extensions that write_mesh() and read_mesh() know, with their dot, the default first.
+/// Extensions that write_mesh() knows, with their dot, the default first: docs/formats.md.
 std::vector<std::string> mesh_extensions();
 
-/// Writes a mesh with the integral cell array "label": .vtu (appended, compressed, 64-bit points) or
-/// .vtk (legacy 4.2, binary, 64-bit points). Whole or nothing. About 1 s for 1.2 million tetrahedra.
-/// Throws IoError, InvalidInput (unknown extension, or not one label a tetrahedron).
+/// Writes a mesh in the format of the extension, whole or nothing. About 1 s for 1.2 million tetrahedra.
+/// Throws IoError, InvalidInput (unknown extension, not one label a tetrahedron, or a label that the format
+/// cannot hold).
 void write_mesh(const std::filesystem::path& path, const TetMesh& mesh);
 
-/// Reads the linear tetrahedra of a .vtu or .vtk file, of any tool, in the order and orientation of the
-/// file. Labels come from the cell array "label", else from one of the names other tools use ("labels",
-/// "medit:ref", "gmsh:physical", "material", ...), else from the first integral cell array that is no
-/// list of ids; without any, all labels are 1.
+/// Reads the linear tetrahedra of a file of any tool, in the order and orientation of the file, in any format
+/// that write_mesh() knows but those of surfaces. Labels of VTK files come from the cell array "label", else
+/// from one of the names other tools use ("labels", "medit:ref", "gmsh:physical", "material", ...), else from
+/// the first integral cell array that is no list of ids; without any, all labels are 1. Other formats: their
+/// groups, sets, references or properties.
 /// Throws IoError (missing, unreadable, truncated, damaged) or InvalidInput (no tetrahedra, labels that
 /// are not whole numbers from 0 to 2^32 - 1).
 TetMesh read_mesh(const std::filesystem::path& path);

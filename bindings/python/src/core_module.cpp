@@ -1,6 +1,7 @@
 // The extension module. What users see is the Python beside it, in anatomesh/.
 #include <pybind11/pybind11.h>
 
+#include "anatomesh/version.h"
 #include "assessment.h"
 #include "errors.h"
 #include "meshing.h"
@@ -8,7 +9,7 @@
 
 PYBIND11_MODULE(_core, module) {
   namespace python = anatomesh::python;
-  module.attr("version") = ANATOMESH_VERSION;
+  module.attr("version") = anatomesh::version();
   python::translate_errors();
   python::bind_tet_mesh(module);
   python::bind_meshing(module);
