@@ -216,8 +216,8 @@ TEST_F(MeshFile, UnusableFilesAreRefused) {
     if (format.read == nullptr) continue;
     const std::string name = std::string("mesh").append(format.extension);
     EXPECT_SAYS(refused<IoError>(name, ""), "empty");
-    refused<IoError>(name, "something else");
-    refused<IoError>(name, std::string(1000, '\0'));
+    refused<Error>(name, "something else");
+    refused<Error>(name, std::string(1000, '\0'));
   }
   const std::string message = refused<InvalidInput>("mesh.obj", "v 0 0 0");
   for (const MeshFormat& format : mesh_formats()) {
