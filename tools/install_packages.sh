@@ -8,12 +8,11 @@ packages=(
   g++ make cmake ninja-build
   libinsighttoolkit5-dev libvtk9-dev libtbb-dev libeigen3-dev libnanoflann-dev
   libcli11-dev nlohmann-json3-dev libfmt-dev libhdf5-dev libpugixml-dev zlib1g-dev
+  python3-dev pybind11-dev
   # to test
   libgtest-dev clang-format libbenchmark-dev valgrind pkg-config dpkg-dev file
-  # programs that are not ours, to read what we write
+  # programs that are not ours, to read what we write (FEniCS is tried where python3-dolfinx is installed)
   calculix-ccx gmsh tetgen python3-h5py python3-meshio python3-nibabel
-  libgtest-dev clang-format libbenchmark-dev valgrind
-  python3-h5py python3-meshio
   # for the demo: the images, and pictures without a display
   mricron-data python3 python3-vtk9 python3-numpy xvfb xauth libgl1-mesa-dri
   "$@"

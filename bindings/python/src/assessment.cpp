@@ -174,6 +174,14 @@ void leave_out_fidelity(const py::object& assessment) {
   for (const py::handle tissue : assessment["tissues"]) tissue["fidelity"] = py::none();
 }
 
+void add_names(const py::object& assessment, const LabelTable& names) {
+  for (const py::handle tissue : assessment["tissues"]) {
+    const auto entry = names.find(tissue["label"].cast<Label>());
+    const bool is_named = entry != names.end() && !entry->second.name.empty();
+    tissue["name"] = is_named ? py::object(py::str(entry->second.name)) : py::none();
+  }
+}
+
 py::object assessed(const TetMesh& mesh, const LabelImage* image, const py::str& frame, bool distances,
                     double min_dihedral_deg, double max_dihedral_deg, double min_mean_ratio,
                     const py::object& progress) {
@@ -181,6 +189,7 @@ py::object assessed(const TetMesh& mesh, const LabelImage* image, const py::str&
   Assessment assessment;
   do_long_work(progress, [&](const Progress& p) { assessment = assess(mesh, image, options, p); });
   const py::object result = value(assessment);
+  add_names(result, mesh.names);
   if (!assessment.has_image) leave_out_fidelity(result);
   result["failed_guarantees"] = failed_guarantees(assessment, options);
   return result;
