@@ -1,23 +1,12 @@
 #include "io/mesh_groups.h"
 
-#include <set>
 #include <utility>
 
-#include "io/number_text.h"
+#include "io/interface_names.h"
 #include "io/set_names.h"
 
 namespace anatomesh {
 namespace {
-
-std::string spoken_name(const Interface& surface, const std::map<Label, std::string>& names) {
-  const std::string& inside = names.at(surface.inside);
-  return surface.outside == 0 ? inside + "_skin" : inside + "_to_" + names.at(surface.outside);
-}
-
-std::string numbered_name(const Interface& surface) {
-  const std::string inside = number_text(surface.inside);
-  return surface.outside == 0 ? "skin_of_" + inside : "interface_" + inside + "_" + number_text(surface.outside);
-}
 
 /// Numbers that are no label, ascending.
 class FreeTags {
@@ -43,13 +32,10 @@ class FreeTags {
 MeshGroups mesh_groups(const TetMesh& mesh, std::size_t most_bytes) {
   MeshGroups groups{set_names(mesh, {.most_bytes = most_bytes}), {}};
   std::vector<Interface> surfaces = interfaces_of(mesh);
-  std::set<std::string> taken;
-  for (const auto& [label, name] : groups.tissues) taken.insert(name);
+  InterfaceNames names(groups.tissues, most_bytes);
   FreeTags tags(groups.tissues, surfaces.size());
   for (Interface& surface : surfaces) {
-    std::string name = spoken_name(surface, groups.tissues);
-    if (name.size() > most_bytes || taken.contains(name)) name = numbered_name(surface);
-    while (!taken.insert(name).second) name += '_';
+    std::string name = names.name_of(surface.inside, surface.outside);
     groups.surfaces.push_back({tags.next(), std::move(name), std::move(surface)});
   }
   return groups;

@@ -24,9 +24,8 @@ struct MeshGroups {
   std::vector<SurfaceGroup> surfaces;    ///< in the order of interfaces_of()
 };
 
-/// Names are all different, tissues and surfaces together, and have at most so many bytes (at least 40): surfaces whose
-/// names would be longer have the labels instead: "interface_3_17", "skin_of_3". Surfaces are numbered from above the
-/// largest label; where that leaves too few numbers, with those that are free.
+/// Names are all different, tissues and surfaces together, and have at most so many bytes: see InterfaceNames. Surfaces
+/// are numbered from above the largest label; where that leaves too few numbers, with those that are free.
 MeshGroups mesh_groups(const TetMesh& mesh, std::size_t most_bytes);
 
 }  // namespace anatomesh

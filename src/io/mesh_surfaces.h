@@ -16,9 +16,7 @@ struct MeshSurface {
 };
 
 /// One for each pair of tissues that meet, for each tissue's part of the outer skin, and for the whole skin. Names are
-/// put together from those of the tissues, see set_names(), and have at most so many bytes (at least 40): what gets
-/// too long, or is the name of another surface but for capitals, has the labels instead: "interface_3_17",
-/// "skin_of_3".
+/// put together from those of the tissues, see set_names() and InterfaceNames, and have at most so many bytes.
 std::vector<MeshSurface> mesh_surfaces(const TetMesh& mesh, const std::map<Label, std::string>& names,
                                        std::size_t most_bytes);
 

@@ -118,17 +118,6 @@ ImageGeometry geometry_of(const MghHeader& h) {
   return g;
 }
 
-void read_values(const fs::path& path, std::byte* values, std::size_t bytes) {
-  ZipFile zip(path);
-  zip.skip(kHeaderBytes);
-  const std::size_t got = zip.read(values, bytes);
-  if (got != bytes) {
-    throw IoError(in_quotes(path) + " is truncated: it has " + number_text(got) + " of the " + number_text(bytes) +
-                  " bytes of its voxels");
-  }
-  zip.drain();
-}
-
 }  // namespace
 
 bool is_mgh_file(const fs::path& path) {
@@ -154,7 +143,7 @@ ImageFile read_mgh_image(const fs::path& path) {
   result.image = blank_image(path, size, geometry_of(header), bytes_of(type));
   const std::size_t count = result.image.voxels.size();
   std::vector<std::byte> values(count * bytes_of(type));
-  read_values(path, values.data(), values.size());
+  read_voxels(path, path, kHeaderBytes, values.data(), values.size());
   if constexpr (std::endian::native == std::endian::little) swap_bytes(values.data(), count, bytes_of(type));
   store_voxels({path, size}, type, {}, values.data(), count, result.image.voxels.data());
   return result;

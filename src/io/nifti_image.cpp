@@ -103,17 +103,6 @@ std::size_t voxel_offset(const fs::path& path, const NiftiHeader& h) {
   return static_cast<std::size_t>(std::max(h.vox_offset, least));
 }
 
-void read_values(const fs::path& path, const fs::path& file, std::size_t offset, std::byte* values, std::size_t bytes) {
-  ZipFile zip(file);
-  zip.skip(offset);
-  const std::size_t got = zip.read(values, bytes);
-  if (got != bytes) {
-    throw IoError(in_quotes(path) + " is truncated: it has " + number_text(got) + " of the " + number_text(bytes) +
-                  " bytes of its voxels");
-  }
-  zip.drain();
-}
-
 }  // namespace
 
 ImageFile read_nifti_image(const fs::path& path) {
@@ -135,7 +124,7 @@ ImageFile read_nifti_image(const fs::path& path) {
   Label* const labels = result.image.voxels.data();
   std::vector<std::byte> buffer(in_place ? 0 : bytes);
   std::byte* const values = in_place ? reinterpret_cast<std::byte*>(labels) : buffer.data();
-  read_values(path, file, voxel_offset(path, header), values, bytes);
+  read_voxels(path, file, voxel_offset(path, header), values, bytes);
   if (header.is_swapped) swap_bytes(values, count, bytes_of(type));
   store_voxels({path, size}, type, scale_of(header), values, count, labels);
   return result;

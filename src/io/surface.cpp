@@ -4,6 +4,7 @@
 #include <set>
 #include <utility>
 
+#include "io/interface_names.h"
 #include "io/set_names.h"
 
 namespace anatomesh {
@@ -41,7 +42,8 @@ void take_points(const TetMesh& mesh, Surface& surface) {
 
 void complete(const TetMesh& mesh, const std::map<Label, std::string>& names, Surface& surface) {
   take_points(mesh, surface);
-  for (SurfacePart& part : surface.parts) part.name = interface_name(names, part.inside, part.outside);
+  InterfaceNames spoken(names, 2 * kMostNameBytes + 8);
+  for (SurfacePart& part : surface.parts) part.name = spoken.name_of(part.inside, part.outside);
   surface.names = mesh.names;
 }
 
@@ -72,11 +74,6 @@ std::size_t triangle_count(const Surface& surface) {
   std::size_t count = 0;
   for (const SurfacePart& part : surface.parts) count += part.triangles.size();
   return count;
-}
-
-std::string interface_name(const std::map<Label, std::string>& names, Label inside, Label outside) {
-  const std::string& name = names.at(inside);
-  return outside == 0 ? name + "_skin" : name + "_to_" + names.at(outside);
 }
 
 std::map<Label, std::string> tissue_names(const TetMesh& mesh) {

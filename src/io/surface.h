@@ -35,9 +35,6 @@ std::map<Label, Surface> tissue_surfaces(const TetMesh& mesh);
 /// How many triangles it has.
 std::size_t triangle_count(const Surface& surface);
 
-/// "Liver_to_Spleen", or "Liver_skin" where the outer label is 0.
-std::string interface_name(const std::map<Label, std::string>& names, Label inside, Label outside);
-
 /// What names of tissues are in files' names and in groups.
 std::map<Label, std::string> tissue_names(const TetMesh& mesh);
 

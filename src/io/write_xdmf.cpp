@@ -11,6 +11,7 @@
 
 #include "anatomesh/interfaces.h"
 #include "io/hdf5_file.h"
+#include "io/interface_names.h"
 #include "io/label_colour.h"
 #include "io/number_text.h"
 #include "io/set_names.h"
@@ -200,13 +201,15 @@ Facets facets_of(const TetMesh& mesh, const std::vector<Interface>& interfaces) 
 }
 
 void add_interface_table(GridFiles& to, const TetMesh& mesh, const std::vector<Interface>& interfaces) {
-  const std::map<Label, std::string> names = set_names(mesh, {});
+  constexpr std::size_t kMostNameBytes = 255;
+  const std::map<Label, std::string> tissues = set_names(mesh, {});
+  InterfaceNames names(tissues, kMostNameBytes);
   pugi::xml_document maps;
   pugi::xml_node main = maps.append_child("main");
   std::vector<Label> labels;
   for (std::size_t n = 0; n < interfaces.size(); ++n) {
     const auto [inside, outside] = std::pair(interfaces[n].inside, interfaces[n].outside);
-    const std::string name = interface_name(names, inside, outside);
+    const std::string name = names.name_of(inside, outside);
     pugi::xml_node map = append_map(main, name, "2", static_cast<std::uint32_t>(n + 1));
     map.append_attribute("inside") = number_text(inside).c_str();
     map.append_attribute("outside") = number_text(outside).c_str();

@@ -71,4 +71,18 @@ inline void require_room_in_file(const std::filesystem::path& image, const std::
                 " bytes cannot hold the voxels that its header declares");
 }
 
+/// Reads so many bytes of voxels from behind an offset, and then to the end of the file. Throws IoError, about the
+/// image, where there are fewer.
+inline void read_voxels(const std::filesystem::path& image, const std::filesystem::path& file, std::size_t offset,
+                        std::byte* voxels, std::size_t bytes) {
+  ZipFile zip(file);
+  zip.skip(offset);
+  const std::size_t got = zip.read(voxels, bytes);
+  if (got != bytes) {
+    throw IoError(in_quotes(image) + " is truncated: it has " + number_text(got) + " of the " + number_text(bytes) +
+                  " bytes of its voxels");
+  }
+  zip.drain();
+}
+
 }  // namespace anatomesh
