@@ -5,6 +5,7 @@
 #include <array>
 #include <charconv>
 #include <cstring>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -87,7 +88,7 @@ class LegacyReader {
   /// Binary numbers are stored big end first.
   void take_binary(NumberArray& to) {
     const std::string_view stored = text_.take(to.bytes.size());
-    std::memcpy(to.bytes.data(), stored.data(), stored.size());
+    std::ranges::copy(std::as_bytes(std::span(stored)), to.bytes.begin());
     reverse_bytes(to);
   }
 
