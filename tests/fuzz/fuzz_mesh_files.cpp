@@ -5,6 +5,7 @@
 // The folder is for the files; one that is read in any other way, or takes too long, is left there as "failed...".
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdio>
@@ -124,8 +125,9 @@ bool try_one(const MeshFormat& format, const fs::path& folder, Random& random) {
   fs::create_directories(folder);
   const fs::path file = folder / std::string("mesh").append(format.extension);
   format.write(file, small_mesh(random));
-  const std::vector<fs::directory_entry> files(fs::directory_iterator(folder), fs::directory_iterator{});
-  const fs::path& victim = files[below(random, files.size())].path();
+  std::vector<fs::path> files(fs::directory_iterator(folder), fs::directory_iterator{});
+  std::ranges::sort(files);  // the same on every file system
+  const fs::path& victim = files[below(random, files.size())];
   std::string bytes = bytes_of(victim);
   damage(bytes, random);
   put(victim, bytes);
