@@ -1,8 +1,8 @@
 #include "io/mesh_surfaces.h"
 
-#include <algorithm>
 #include <utility>
 
+#include "base/sort_and_unify.h"
 #include "io/interface_names.h"
 
 namespace anatomesh {
@@ -27,8 +27,7 @@ std::vector<VertexId> vertices_of(const TetMesh& mesh, const std::vector<TetFace
   for (const TetFace face : faces) {
     for (const VertexId vertex : corners_of(mesh, face)) vertices.push_back(vertex);
   }
-  std::ranges::sort(vertices);
-  vertices.erase(std::ranges::unique(vertices).begin(), vertices.end());
+  sort_and_unify(vertices);
   return vertices;
 }
 

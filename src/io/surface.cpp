@@ -4,6 +4,7 @@
 #include <set>
 #include <utility>
 
+#include "base/sort_and_unify.h"
 #include "io/interface_names.h"
 #include "io/set_names.h"
 
@@ -30,8 +31,7 @@ void take_points(const TetMesh& mesh, Surface& surface) {
   for (const SurfacePart& part : surface.parts) {
     for (const auto& triangle : part.triangles) used.insert(used.end(), triangle.begin(), triangle.end());
   }
-  std::ranges::sort(used);
-  used.erase(std::unique(used.begin(), used.end()), used.end());
+  sort_and_unify(used);
   for (const VertexId vertex : used) surface.points_mm.push_back(mesh.points_mm[vertex]);
   for (SurfacePart& part : surface.parts) {
     for (auto& triangle : part.triangles) {

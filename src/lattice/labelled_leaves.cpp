@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "base/sort_and_unify.h"
 
 namespace anatomesh {
 
@@ -49,9 +50,7 @@ std::vector<std::uint32_t> LabelledLeaves::touched_places(std::span<const TetRef
       if (at != kNone && !leaves_[at].gone) touched.push_back(at);
     }
   }
-  std::ranges::sort(touched);
-  const auto repeated = std::ranges::unique(touched);
-  touched.erase(repeated.begin(), repeated.end());
+  sort_and_unify(touched);
   return touched;
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "base/sort_and_unify.h"
 #include "lattice/clean_labels.h"
 #include "lattice/mend_pieces.h"
 #include "lattice/mend_surfaces.h"
@@ -230,8 +231,7 @@ void LatticeMender::untangle() {
       for (const TetId t : complex_.tets_of_vertex[tangle[i]])
         tangle.insert(tangle.end(), complex_.mesh.tets[t].begin(), complex_.mesh.tets[t].end());
     }
-    std::sort(tangle.begin(), tangle.end());
-    tangle.erase(std::unique(tangle.begin(), tangle.end()), tangle.end());
+    sort_and_unify(tangle);
     mend_neighbourhoods(complex_, pieces_, tangle, n < kNearby ? Reach::one_tissue : Reach::any, contents_.sizes,
                         origins_.size(), changed_);
     mend_single_tets(complex_, pieces_, singular_vertices(complex_), voxel_price(complex_, image_, contents_),
@@ -265,9 +265,7 @@ void LatticeMender::refine(const std::vector<TetId>& marked) {
 
 // Tetrahedra keep their numbers.
 void LatticeMender::follow_leaves(std::vector<std::uint32_t> touched) {
-  std::ranges::sort(touched);
-  const auto repeated = std::ranges::unique(touched);
-  touched.erase(repeated.begin(), repeated.end());
+  sort_and_unify(touched);
   first_fresh_ = static_cast<TetId>(origins_.size());
   const std::vector<TetId> dropped = mesher_.update(leaves_.list(), touched, complex_.mesh, origins_);
   live_tets_ += origins_.size() - first_fresh_ - dropped.size();

@@ -10,6 +10,7 @@
 
 #include "base/disjoint_sets.h"
 #include "base/parallel.h"
+#include "base/sort_and_unify.h"
 #include "base/vec.h"
 #include "lattice/tet_map.h"
 #include "lattice/update_pieces.h"
@@ -82,8 +83,7 @@ class PieceMender {
       if (repair_.changed.size() == done) break;
       update_pieces_here(done);
     }
-    std::sort(repair_.refine.begin(), repair_.refine.end());
-    repair_.refine.erase(std::unique(repair_.refine.begin(), repair_.refine.end()), repair_.refine.end());
+    sort_and_unify(repair_.refine);
     return repair_;
   }
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "base/sort_and_unify.h"
 #include "lattice/update_pieces.h"
 
 namespace anatomesh {
@@ -120,6 +121,14 @@ class Star {
   std::vector<std::pair<Place, Place>> rims_;   // those between two tissues
 };
 
+// Ascending, each once.
+std::vector<TissueId> tissues_at(const TetComplex& complex, VertexId v) {
+  std::vector<TissueId> tissues;
+  for (const TetId t : complex.tets_of_vertex[v]) tissues.push_back(complex.tissue(t));
+  sort_and_unify(tissues);
+  return tissues;
+}
+
 // Whether giving these tetrahedra to a tissue joins none of its pieces and makes no other piece vanish.
 bool joins_no_pieces(const TetComplex& complex, const Pieces& pieces, std::span<const TetId> tets, TissueId tissue) {
   std::map<std::uint32_t, std::uint32_t> taken;
@@ -160,8 +169,7 @@ bool hangs_together_without(const TetComplex& complex, std::span<const TetId> fa
       }
     }
   }
-  std::sort(around.begin(), around.end());
-  around.erase(std::unique(around.begin(), around.end()), around.end());
+  sort_and_unify(around);
   std::vector<char> seen(around.size(), 0);
   const auto place = [&](TetId t) {
     return static_cast<std::size_t>(std::lower_bound(around.begin(), around.end(), t) - around.begin());
@@ -257,11 +265,8 @@ class LabelMender {
       own.push_back(complex_.tissue(t));
       vertices.insert(vertices.end(), complex_.mesh.tets[t].begin(), complex_.mesh.tets[t].end());
     }
-    std::sort(vertices.begin(), vertices.end());
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    std::vector<TissueId> tissues = own;
-    std::sort(tissues.begin(), tissues.end());
-    tissues.erase(std::unique(tissues.begin(), tissues.end()), tissues.end());
+    sort_and_unify(vertices);
+    const std::vector<TissueId> tissues = tissues_at(complex_, v);
     const unsigned before = defects_at(vertices);
     Choice best;
     for (const TissueId tissue : tissues) {
@@ -399,9 +404,7 @@ namespace {
 void sort_once(std::vector<VertexId>& vertices, std::size_t vertex_count) {
   constexpr std::size_t kFew = 16;
   if (vertices.size() < vertex_count / kFew) {
-    std::ranges::sort(vertices);
-    const auto repeated = std::ranges::unique(vertices);
-    vertices.erase(repeated.begin(), repeated.end());
+    sort_and_unify(vertices);
     return;
   }
   std::vector<char> listed(vertex_count, 0);
@@ -493,15 +496,6 @@ struct Group {
   std::vector<TetId> tets;
   std::vector<TissueId> tissues;  // ascending
 };
-
-std::vector<TissueId> tissues_at(const TetComplex& complex, VertexId v) {
-  std::vector<TissueId> tissues;
-  for (const TetId t : complex.tets_of_vertex[v]) tissues.push_back(complex.tissue(t));
-  std::ranges::sort(tissues);
-  const auto repeated = std::ranges::unique(tissues);
-  tissues.erase(repeated.begin(), repeated.end());
-  return tissues;
-}
 
 // Cuts the tetrahedra at some vertices into groups, from one vertex to the next.
 class Grouping {

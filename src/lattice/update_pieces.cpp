@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/disjoint_sets.h"
+#include "base/sort_and_unify.h"
 #include "lattice/tet_map.h"
 
 namespace anatomesh {
@@ -151,9 +152,7 @@ class PieceUpdate {
         if (pieces_.of_tet[other] != kNone) around.emplace_back(pieces_.of_tet[other], other);
       }
     }
-    std::ranges::sort(around);
-    const auto repeated = std::ranges::unique(around);
-    around.erase(repeated.begin(), repeated.end());
+    sort_and_unify(around);
     for (std::size_t i = 0; i < around.size();) {
       const std::uint32_t piece = around[i].first;
       std::vector<TetId> tets;
@@ -185,12 +184,11 @@ class PieceUpdate {
   }
 
   void split_rest() {
-    std::ranges::sort(beside_split_);
+    sort_and_unify(beside_split_);
     for (std::size_t i = 0; i < beside_split_.size();) {
       const std::uint32_t piece = beside_split_[i].first;
       std::vector<TetId> tets;
       for (; i < beside_split_.size() && beside_split_[i].first == piece; ++i) tets.push_back(beside_split_[i].second);
-      tets.erase(std::unique(tets.begin(), tets.end()), tets.end());
       split(tets);
     }
     for (const std::vector<TetId>& part : parts_) {
