@@ -17,6 +17,7 @@
 #include "io/text_cursor.h"
 #include "io/text_fields.h"
 #include "io/text_output.h"
+#include "io/whole_files.h"
 
 namespace anatomesh {
 namespace {
@@ -147,11 +148,7 @@ std::vector<NumberedTet> read_tets(WordLines& lines) {
 
 void write_tetgen(const fs::path& path, const TetMesh& mesh) {
   const Pair pair(path);
-  OutputFile nodes(pair.nodes), elements(pair.elements);
-  write_whole_file(nodes.temporary(), node_text(mesh));
-  write_whole_file(elements.temporary(), element_text(mesh));
-  nodes.commit();
-  elements.commit();
+  write_whole_files({{pair.nodes, node_text(mesh)}, {pair.elements, element_text(mesh)}});
 }
 
 TetMesh read_tetgen(const fs::path& path) {
