@@ -141,9 +141,11 @@ void LabelledLeaves::give(LabelledLeaf& leaf, std::uint32_t part, TissueId tissu
   vote.pure = vote.hits == vote.count;
 }
 
-void LabelledLeaves::decide(std::size_t leaf, std::uint32_t part, TissueId tissue) {
+bool LabelledLeaves::decide(std::size_t leaf, std::uint32_t part, TissueId tissue) {
+  if (leaves_[leaf].votes[part].tissue == tissue) return false;
   give(leaves_[leaf], part, tissue);
   leaves_[leaf].decided = true;
+  return true;
 }
 
 }  // namespace anatomesh

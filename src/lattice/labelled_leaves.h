@@ -49,8 +49,8 @@ class LabelledLeaves {
   /// Lets what a leaf is refined into next vote, and forget what was decided.
   void revote(std::size_t leaf) { leaves_[leaf].revote = true; }
 
-  /// Gives a part of a leaf a tissue, from now on.
-  void decide(std::size_t leaf, std::uint32_t part, TissueId tissue);
+  /// Gives a part of a leaf a tissue, from now on. Returns whether it had another one.
+  bool decide(std::size_t leaf, std::uint32_t part, TissueId tissue);
 
  private:
   static constexpr std::uint32_t kNone = ~0u;

@@ -243,9 +243,7 @@ void LatticeMender::record_labels() {
   decided_.clear();
   for (const TetId t : changed_) {
     const auto [leaf, part] = origins_[t];
-    if (complex_.tissue(t) == leaves_.list()[leaf].votes[part].tissue) continue;
-    leaves_.decide(leaf, part, complex_.tissue(t));
-    decided_.push_back(leaf);
+    if (leaves_.decide(leaf, part, complex_.tissue(t))) decided_.push_back(leaf);
   }
 }
 
@@ -299,8 +297,7 @@ void clean_leaves(const VoxelVotes& votes, LabelledLeaves& leaves, LeafMesher& m
   clean_labels(taken.mesh, has_weak_vote);
   for (std::size_t t = 0; t < taken.origins.size(); ++t) {
     const auto [leaf, part] = taken.origins[t];
-    if (taken.mesh.tissues[t] != leaves.list()[leaf].votes[part].tissue)
-      leaves.decide(leaf, part, taken.mesh.tissues[t]);
+    leaves.decide(leaf, part, taken.mesh.tissues[t]);
   }
 }
 
