@@ -13,6 +13,7 @@
 #include "apps/process.h"
 #include "apps/raw_images.h"
 #include "support/test_images.h"
+#include "support/test_meshes.h"
 
 namespace anatomesh::testing {
 namespace {
@@ -287,11 +288,7 @@ TEST_F(BadOutput, more_memory_than_allowed) {
 
 TEST(BadMesh, is_refused_by_check_and_convert) {
   const ScratchFolder folder;
-  TetMesh mesh;
-  mesh.points_mm = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  mesh.tets = {{0, 1, 2, 3}};
-  mesh.labels = {1};
-  write_mesh(folder / "good.vtu", mesh);
+  write_mesh(folder / "good.vtu", corner_tet());
   const std::string good = read_file(folder / "good.vtu");
   write_file(folder / "cut.vtu", good.substr(0, good.size() / 2));
   write_file(folder / "notes.vtu", "these are notes, not a mesh\n");

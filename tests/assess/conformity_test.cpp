@@ -4,6 +4,7 @@
 
 #include "anatomesh/assess.h"
 #include "support/test_images.h"
+#include "support/test_meshes.h"
 #include "voxel_mesh.h"
 
 namespace anatomesh {
@@ -36,7 +37,7 @@ TEST(Conformity, EveryShapeAsVoxelsIsConforming) {
 }
 
 TEST(Conformity, FaceInThreeTetrahedra) {
-  TetMesh mesh = testing::single_tet({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}});
+  TetMesh mesh = testing::corner_tet();
   mesh.points_mm.insert(mesh.points_mm.end(), {{0, 0, -1}, {0.1, 0.1, -2}});
   mesh.tets.insert(mesh.tets.end(), {{0, 2, 1, 4}, {0, 2, 1, 5}});
   mesh.labels = {1, 1, 1};
@@ -44,13 +45,13 @@ TEST(Conformity, FaceInThreeTetrahedra) {
 }
 
 TEST(Conformity, TetrahedraOnTheSameSideOfTheirFaceAreFolded) {
-  TetMesh twice = testing::single_tet({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}});
+  TetMesh twice = testing::corner_tet();
   twice.tets.push_back(twice.tets[0]);
   twice.labels.push_back(2);
   const Assessment same = assess(twice);
   EXPECT_EQ(same.conformity.folded_tets, 1u);
   EXPECT_FALSE(failed_guarantees(same, {.min_dihedral_deg = 0, .max_dihedral_deg = 180, .min_mean_ratio = 0}).empty());
-  TetMesh over = testing::single_tet({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}});
+  TetMesh over = testing::corner_tet();
   over.points_mm.push_back({0.2, 0.2, 2});
   over.tets.push_back({0, 1, 2, 4});
   over.labels.push_back(1);

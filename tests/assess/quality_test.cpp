@@ -8,11 +8,13 @@
 #include "anatomesh/assess.h"
 #include "anatomesh/errors.h"
 #include "support/test_images.h"
+#include "support/test_meshes.h"
 #include "voxel_mesh.h"
 
 namespace anatomesh {
 namespace {
 
+using testing::corner_tet;
 using testing::single_tet;
 
 double deg(double radians) { return radians * 180 / std::numbers::pi; }
@@ -37,7 +39,7 @@ TEST(Quality, RegularTetrahedron) {
 }
 
 TEST(ShapeSummary, SaysWhatQualityDoes) {
-  TetMesh mesh = single_tet({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}});
+  TetMesh mesh = corner_tet();
   mesh.points_mm.push_back({1, 1, 1.5});
   mesh.tets.push_back({1, 2, 3, 4});
   mesh.labels.push_back(2);
@@ -51,7 +53,7 @@ TEST(ShapeSummary, SaysWhatQualityDoes) {
 }
 
 TEST(Quality, RightCornerTetrahedron) {
-  const Quality q = quality_of(single_tet({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}));
+  const Quality q = quality_of(corner_tet());
   EXPECT_NEAR(q.min_dihedral_deg, deg(std::acos(1 / std::sqrt(3))), 1e-12);
   EXPECT_NEAR(q.max_dihedral_deg, 90, 1e-12);
   EXPECT_NEAR(q.min_mean_ratio, 12 * std::pow(0.5, 2.0 / 3) / 9, 1e-12);
@@ -105,7 +107,7 @@ TEST(Quality, MirroredMeshIsNamedOnceAndMeasuredTurnedRound) {
 }
 
 TEST(Quality, TwoTetrahedraSharingAFace) {
-  TetMesh mesh = single_tet({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}});
+  TetMesh mesh = corner_tet();
   mesh.points_mm.push_back({0, 0, -3});
   mesh.tets.push_back({0, 2, 1, 4});
   mesh.labels.push_back(7);
@@ -162,7 +164,7 @@ TEST(Quality, BackgroundTetrahedraAreLeftOut) {
 }
 
 TEST(Quality, BrokenArraysAreRefused) {
-  TetMesh mesh = single_tet({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}});
+  TetMesh mesh = corner_tet();
   TetMesh bad = mesh;
   bad.labels.clear();
   EXPECT_THROW(assess(bad), InvalidInput);

@@ -6,6 +6,7 @@
 
 #include "anatomesh/assess.h"
 #include "support/test_images.h"
+#include "support/test_meshes.h"
 #include "voxel_mesh.h"
 
 namespace anatomesh {
@@ -105,7 +106,7 @@ TEST(Topology, InterfacesBelongToBothTissues) {
 }
 
 TEST(Topology, SurfaceOpenWhereAFaceIsInThreeTetrahedra) {
-  TetMesh mesh = testing::single_tet({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}});
+  TetMesh mesh = testing::corner_tet();
   mesh.points_mm.insert(mesh.points_mm.end(), {{0, 0, -1}, {0.1, 0.1, -2}});
   mesh.tets.insert(mesh.tets.end(), {{0, 2, 1, 4}, {0, 2, 1, 5}});
   mesh.labels = {1, 1, 1};

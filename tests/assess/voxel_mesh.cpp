@@ -97,8 +97,4 @@ TetMesh moved(TetMesh mesh, const std::function<Vec3(Vec3)>& to) {
   return mesh;
 }
 
-TetMesh single_tet(const std::array<Vec3, 4>& corners) {
-  return {{corners.begin(), corners.end()}, {{0, 1, 2, 3}}, {1}};
-}
-
 }  // namespace anatomesh::testing

@@ -25,7 +25,4 @@ TetMesh jittered(TetMesh mesh, double distance_mm, unsigned seed = 1);
 /// The mesh with every vertex moved.
 TetMesh moved(TetMesh mesh, const std::function<Vec3(Vec3)>& to);
 
-/// One tetrahedron of label 1.
-TetMesh single_tet(const std::array<Vec3, 4>& corners);
-
 }  // namespace anatomesh::testing

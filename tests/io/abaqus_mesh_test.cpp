@@ -22,11 +22,6 @@ TEST_F(AbaqusMesh, HasSetsAndSurfacesByName) {
   EXPECT_SAYS(text, "*NSET, NSET=skin\n1, 2, 3, 4, 5\n");
 }
 
-TEST_F(AbaqusMesh, NamesComeBackAsTheyWere) {
-  const TetMesh mesh = two_named_tissues();
-  EXPECT_EQ(mesh_in("copy.inp", written("mesh.inp", mesh)).names, mesh.names);
-}
-
 TEST_F(AbaqusMesh, NumbersReadInTwentyCharactersAreNearTheirValue) {
   TetMesh mesh = two_named_tissues();
   mesh.points_mm[0] = {-1.2345678901234567e-7, 0.1234567890123456e-30, -98.76543210987654};

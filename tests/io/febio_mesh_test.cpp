@@ -28,11 +28,6 @@ TEST_F(FebioMesh, HasPartsMaterialsAndSurfaces) {
   EXPECT_SAYS(text, "<SolidDomain name=\"white_matter\" mat=\"white_matter\"/>");
 }
 
-TEST_F(FebioMesh, NamesComeBackAsTheyWere) {
-  const TetMesh mesh = two_named_tissues();
-  EXPECT_EQ(mesh_in("copy.feb", written("mesh.feb", mesh)).names, mesh.names);
-}
-
 TEST_F(FebioMesh, OfOtherTools) {
   const std::string parts = part("Left &amp; right", "<elem id='9'>3,4,5,6</elem>") +
                             part("shell", "<elem id='1'>3,4,5</elem>", "tri3") +

@@ -1,40 +1,23 @@
 // What is special about Gmsh's files; what Gmsh itself reads and writes is in tests/tools/gmsh_medit_test.py.
 #include <string>
 
-#include "anatomesh/errors.h"
-#include "anatomesh/io.h"
-#include "io/io_fixture.h"
+#include "io/mesh_file_fixture.h"
 
 namespace anatomesh::testing {
 namespace {
 
-class GmshFile : public IoTest {
+class GmshFile : public NamedMeshFileTest {
  protected:
-  TetMesh read(const std::string& bytes) const { return read_mesh(put("mesh.msh", bytes)); }
-
-  template <typename Expected>
-  std::string refused(const std::string& bytes) const {
-    const auto file = put("mesh.msh", bytes);
-    return message_of<Expected>(file, [&] { read_mesh(file); });
-  }
+  GmshFile() : NamedMeshFileTest("mesh.msh") {}
 };
 
 using Tets = std::vector<std::array<VertexId, 4>>;
 
-/// Two tetrahedra that share a face.
-TetMesh two_tets(Label first, Label second) {
-  TetMesh mesh;
-  mesh.points_mm = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}, {9, 9, 9}};
-  mesh.tets = {{0, 1, 2, 3}, {1, 4, 2, 3}};
-  mesh.labels = {first, second};
-  return mesh;
-}
-
 TEST_F(GmshFile, GroupsAndEntities) {
   TetMesh mesh = two_tets(5, 3);
+  mesh.points_mm.push_back({9, 9, 9});  // of no tetrahedron
   mesh.names[5].name = "brain";
-  write_mesh(in_folder("mesh.msh"), mesh);
-  EXPECT_EQ(bytes_of(in_folder("mesh.msh")),
+  EXPECT_EQ(written(mesh),
             "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n"
             "$PhysicalNames\n5\n2 6 \"label_3_skin\"\n2 7 \"label_3_to_brain\"\n2 8 \"brain_skin\"\n"
             "3 3 \"label_3\"\n3 5 \"brain\"\n$EndPhysicalNames\n"
@@ -47,19 +30,16 @@ TEST_F(GmshFile, GroupsAndEntities) {
 }
 
 TEST_F(GmshFile, GroupsOfSurfacesClashWithNoLabel) {
-  const TetMesh mesh = two_tets(2147483647, 2);
-  write_mesh(in_folder("mesh.msh"), mesh);
-  const std::string text = bytes_of(in_folder("mesh.msh"));
+  const std::string text = written(two_tets(2147483647, 2));
   for (const char* group : {"2 1 \"", "2 3 \"", "2 4 \""}) EXPECT_SAYS(text, group);
   EXPECT_EQ(text.find("\n2 2 \""), std::string::npos);
 }
 
 TEST_F(GmshFile, SurfacesAreNotCalledAsTissues) {
   TetMesh mesh = two_tets(1, 2);
-  mesh.names[1].name = "a";
-  mesh.names[2].name = "a_skin";
-  write_mesh(in_folder("mesh.msh"), mesh);
-  const std::string text = bytes_of(in_folder("mesh.msh"));
+  mesh.names[1].name.append("a");
+  mesh.names[2].name.append("a_skin");
+  const std::string text = written(mesh);
   for (const char* group : {"2 3 \"skin_of_1\"", "2 4 \"a_to_a_skin\"", "2 5 \"a_skin_skin\"", "3 2 \"a_skin\""}) {
     EXPECT_SAYS(text, group);
   }

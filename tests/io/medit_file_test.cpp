@@ -1,32 +1,20 @@
 // What is special about MEDIT's files; what Gmsh and meshio read and write is in tests/tools/gmsh_medit_test.py.
 #include <string>
 
-#include "anatomesh/errors.h"
-#include "anatomesh/io.h"
-#include "io/io_fixture.h"
+#include "io/mesh_file_fixture.h"
 
 namespace anatomesh::testing {
 namespace {
 
-class MeditFile : public IoTest {
+class MeditFile : public NamedMeshFileTest {
  protected:
-  TetMesh read(const std::string& bytes) const { return read_mesh(put("mesh.mesh", bytes)); }
-
-  template <typename Expected>
-  std::string refused(const std::string& bytes) const {
-    const auto file = put("mesh.mesh", bytes);
-    return message_of<Expected>(file, [&] { read_mesh(file); });
-  }
+  MeditFile() : NamedMeshFileTest("mesh.mesh") {}
 };
 
 TEST_F(MeditFile, ReferencesAndComments) {
-  TetMesh mesh;
-  mesh.points_mm = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};
-  mesh.tets = {{0, 1, 2, 3}, {1, 4, 2, 3}};
-  mesh.labels = {5, 3};
+  TetMesh mesh = two_tets(5, 3);
   mesh.names[5].name = "white matter";
-  write_mesh(in_folder("mesh.mesh"), mesh);
-  EXPECT_EQ(bytes_of(in_folder("mesh.mesh")),
+  EXPECT_EQ(written(mesh),
             "MeshVersionFormatted 2\nDimension 3\n# label 5 white matter\n# surface 6 label_3_skin\n"
             "# surface 7 label_3_to_white matter\n# surface 8 white matter_skin\n"
             "\nVertices\n5\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n1 1 1 0\n"

@@ -2,15 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include "support/test_meshes.h"
+
 namespace anatomesh::testing {
 namespace {
 
 /// Three tetrahedra in a row, each of another tissue.
 TetMesh three_tissues() {
-  TetMesh mesh;
-  mesh.points_mm = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}, {2, 0, 2}};
-  mesh.tets = {{0, 1, 2, 3}, {1, 4, 2, 3}, {1, 5, 4, 3}};
-  mesh.labels = {3, 17, 20};
+  TetMesh mesh = two_tets(3, 17);
+  mesh.points_mm.push_back({2, 0, 2});
+  mesh.tets.push_back({1, 5, 4, 3});
+  mesh.labels.push_back(20);
   return mesh;
 }
 

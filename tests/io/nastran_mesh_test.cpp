@@ -18,15 +18,13 @@ TEST_F(NastranMesh, HasLargeFields) {
   EXPECT_SAYS(text, "\nCTETRA  2       3       1       2       3       4       \nENDDATA\n");
 }
 
-TEST_F(NastranMesh, NamesAndAllBitsComeBack) {
+TEST_F(NastranMesh, AllBitsComeBack) {
   TetMesh mesh = two_named_tissues();
   std::mt19937_64 random(7);
   for (Vec3& point : mesh.points_mm) {
     for (std::size_t axis = 0; axis < 3; ++axis) point[axis] = std::generate_canonical<double, 53>(random) * 200 - 100;
   }
-  const TetMesh copy = mesh_in("copy.bdf", written("mesh.bdf", mesh));
-  EXPECT_EQ(copy.points_mm, mesh.points_mm);
-  EXPECT_EQ(copy.names, mesh.names);
+  EXPECT_EQ(mesh_in("copy.bdf", written("mesh.bdf", mesh)).points_mm, mesh.points_mm);
 }
 
 TEST_F(NastranMesh, ChangedPointsAreNotChangedBack) {

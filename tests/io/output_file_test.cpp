@@ -9,6 +9,7 @@
 #include "anatomesh/io.h"
 #include "io/io_fixture.h"
 #include "support/test_images.h"
+#include "support/test_meshes.h"
 
 namespace anatomesh::testing {
 namespace {
@@ -16,14 +17,6 @@ namespace {
 namespace fs = std::filesystem;
 
 class OutputFiles : public IoTest {};
-
-TetMesh one_tet() {
-  TetMesh mesh;
-  mesh.points_mm = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  mesh.tets = {{0, 1, 2, 3}};
-  mesh.labels = {1};
-  return mesh;
-}
 
 /// While it lives, no file can grow beyond some bytes, as if the disk were full.
 class FullDisk {
@@ -81,7 +74,7 @@ TEST_F(OutputFiles, FullDiskLeavesWhatWasThere) {
   for (const auto& file : {mesh_file, text_file, image_file}) put(file.filename().string(), "earlier");
   for (const rlim_t bytes : {0, 1, 100, 400}) {
     const FullDisk full(bytes);
-    message_of<IoError>(mesh_file, [&] { write_mesh(mesh_file, one_tet()); });
+    message_of<IoError>(mesh_file, [&] { write_mesh(mesh_file, corner_tet()); });
     message_of<IoError>(text_file, [&] { write_text_file(text_file, std::string(1000, 'x')); });
     message_of<IoError>(image_file, [&] { write_label_image(image_file, noise(1, 16)); });
   }
@@ -102,7 +95,7 @@ TEST_F(OutputFiles, UnwritablePlacesAreNamedBeforehand) {
   for (const Case& c : cases) {
     EXPECT_SAYS(message_of<IoError>(c.path, [&] { check_writable(c.path); }), c.says);
     EXPECT_SAYS(message_of<IoError>(c.path, [&] { check_mesh_writable(c.path); }), c.says);
-    EXPECT_SAYS(message_of<IoError>(c.path, [&] { write_mesh(c.path, one_tet()); }), c.says);
+    EXPECT_SAYS(message_of<IoError>(c.path, [&] { write_mesh(c.path, corner_tet()); }), c.says);
     EXPECT_SAYS(message_of<IoError>(c.path, [&] { write_text_file(c.path, "text"); }), c.says);
   }
   EXPECT_EQ(folder_listing(), "folder.vtu plain");
@@ -120,7 +113,8 @@ TEST_F(OutputFiles, UnknownExtensionsAreRefused) {
   for (const char* name : {"mesh", "mesh.xyz", "mesh.vtu.gz", ".vtu"}) {
     const auto file = in_folder(name);
     EXPECT_SAYS(message_of<InvalidInput>(file, [&] { check_mesh_writable(file); }), "extension must be .vtu, .vtk");
-    EXPECT_SAYS(message_of<InvalidInput>(file, [&] { write_mesh(file, one_tet()); }), "extension must be .vtu, .vtk");
+    EXPECT_SAYS(message_of<InvalidInput>(file, [&] { write_mesh(file, corner_tet()); }),
+                "extension must be .vtu, .vtk");
   }
   for (const char* name : {"image", "image.xyz", "image.mhd", "image.hdr"}) {
     const auto image = in_folder(name);

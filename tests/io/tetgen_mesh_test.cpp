@@ -14,11 +14,7 @@ TEST_F(TetGenMesh, EitherFileStandsForBoth) {
   for (const char* name : {"mesh.node", "mesh.ele"}) {
     write_mesh(in_folder(name), mesh);
     EXPECT_EQ(folder_listing(), "mesh.ele mesh.node");
-    const TetMesh copy = read_mesh(in_folder(name));
-    EXPECT_EQ(copy.points_mm, mesh.points_mm);
-    EXPECT_EQ(copy.tets, mesh.tets);
-    EXPECT_EQ(copy.labels, mesh.labels);
-    EXPECT_EQ(copy.names, mesh.names);
+    expect_same(read_mesh(in_folder(name)), mesh);
     std::filesystem::remove(in_folder("mesh.node"));
     std::filesystem::remove(in_folder("mesh.ele"));
   }

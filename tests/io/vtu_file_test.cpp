@@ -1,22 +1,14 @@
 // What is special about VTK's XML files; what other programs write is in tests/tools/vtu_test.py.
 #include <string>
 
-#include "anatomesh/errors.h"
-#include "anatomesh/io.h"
-#include "io/io_fixture.h"
+#include "io/mesh_file_fixture.h"
 
 namespace anatomesh::testing {
 namespace {
 
-class VtuFile : public IoTest {
+class VtuFile : public NamedMeshFileTest {
  protected:
-  TetMesh read(const std::string& bytes) const { return read_mesh(put("mesh.vtu", bytes)); }
-
-  template <typename Expected>
-  std::string refused(const std::string& bytes) const {
-    const auto file = put("mesh.vtu", bytes);
-    return message_of<Expected>(file, [&] { read_mesh(file); });
-  }
+  VtuFile() : NamedMeshFileTest("mesh.vtu") {}
 };
 
 std::string file_of(const std::string& grid, const std::string& attributes = "byte_order=\"LittleEndian\"") {

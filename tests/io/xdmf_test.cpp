@@ -3,30 +3,19 @@
 #include <string>
 #include <vector>
 
-#include "anatomesh/errors.h"
-#include "anatomesh/io.h"
 #include "io/hdf5_file.h"
-#include "io/io_fixture.h"
+#include "io/mesh_file_fixture.h"
 
 namespace anatomesh::testing {
 namespace {
 
-class Xdmf : public IoTest {
+class Xdmf : public NamedMeshFileTest {
  protected:
-  template <typename Expected>
-  std::string refused(const std::string& text) const {
-    const auto file = put("mesh.xdmf", text);
-    return message_of<Expected>(file, [&] { read_mesh(file); });
-  }
-
-  TetMesh read(const std::string& text) const { return read_mesh(put("mesh.xdmf", text)); }
+  Xdmf() : NamedMeshFileTest("mesh.xdmf") {}
 };
 
-TetMesh two_tets() {
-  TetMesh mesh;
-  mesh.points_mm = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1.0 / 3}, {1, 1, 1e-9}};
-  mesh.tets = {{0, 1, 2, 3}, {1, 4, 2, 3}};
-  mesh.labels = {7, 4294967295U};
+TetMesh two_tissues() {
+  TetMesh mesh = two_uneven_tets(7, 4294967295U);
   mesh.names[7] = {"Left \"ventricle\" <3 & ]]> co", Colour{255, 0, 17}};
   mesh.names[9] = {"Große Vene", {}};
   return mesh;
@@ -54,7 +43,7 @@ std::string cell_attribute(const std::string& name, const std::string& type, con
 }
 
 TEST_F(Xdmf, FourFilesThatBelongTogether) {
-  write_mesh(in_folder("brain.xdmf"), two_tets());
+  write_mesh(in_folder("brain.xdmf"), two_tissues());
   EXPECT_EQ(folder_listing(), "brain.h5 brain.xdmf brain_facets.h5 brain_facets.xdmf");
   const std::string tets = bytes_of(in_folder("brain.xdmf")), facets = bytes_of(in_folder("brain_facets.xdmf"));
   EXPECT_SAYS(tets, "brain.h5:/mesh/tetrahedra");
@@ -66,9 +55,9 @@ TEST_F(Xdmf, FourFilesThatBelongTogether) {
 }
 
 TEST_F(Xdmf, HdfFilesAreDeterministic) {
-  write_mesh(in_folder("mesh.xdmf"), two_tets());
+  write_mesh(in_folder("mesh.xdmf"), two_tissues());
   const std::string first = bytes_of(in_folder("mesh.h5")), facets = bytes_of(in_folder("mesh_facets.h5"));
-  write_mesh(in_folder("mesh.xdmf"), two_tets());
+  write_mesh(in_folder("mesh.xdmf"), two_tissues());
   EXPECT_EQ(bytes_of(in_folder("mesh.h5")), first);
   EXPECT_EQ(bytes_of(in_folder("mesh_facets.h5")), facets);
 }
@@ -77,7 +66,7 @@ TEST_F(Xdmf, AllFilesOrNone) {
   put("mesh.h5", "earlier");
   std::filesystem::create_directory(in_folder("mesh_facets.xdmf"));
   EXPECT_SAYS(
-      message_of<IoError>(in_folder("mesh_facets.xdmf"), [&] { write_mesh(in_folder("mesh.xdmf"), two_tets()); }),
+      message_of<IoError>(in_folder("mesh_facets.xdmf"), [&] { write_mesh(in_folder("mesh.xdmf"), two_tissues()); }),
       "it is a folder");
   EXPECT_EQ(folder_listing(), "mesh.h5 mesh_facets.xdmf");
   EXPECT_EQ(bytes_of(in_folder("mesh.h5")), "earlier");
@@ -138,8 +127,7 @@ TEST_F(Xdmf, DamagedTextIsRefused) {
 }
 
 TEST_F(Xdmf, MissingDataAreRefused) {
-  write_mesh(in_folder("mesh.xdmf"), two_tets());
-  const std::string text = bytes_of(in_folder("mesh.xdmf"));
+  const std::string text = written(two_tissues());
   const auto with = [&](const std::string& part, const std::string& instead) {
     std::string changed = text;
     changed.replace(changed.find(part), part.size(), instead);
@@ -161,23 +149,18 @@ TEST_F(Xdmf, MissingDataAreRefused) {
 }
 
 TEST_F(Xdmf, DamagedHdfNeverCrashes) {
-  write_mesh(in_folder("mesh.xdmf"), two_tets());
+  written(two_tissues());
   const std::string bytes = bytes_of(in_folder("mesh.h5"));
   std::mt19937 random(3);
   for (int trial = 0; trial < 1000; ++trial) {
-    std::string damaged = bytes;
-    for (int n = 0; n < 1 + trial % 5; ++n) damaged[random() % damaged.size()] = static_cast<char>(random());
-    put("mesh.h5", damaged);
-    try {
-      read_mesh(in_folder("mesh.xdmf"));
-    } catch (const Error&) {
-    }
+    put("mesh.h5", with_changed_bytes(bytes, 1 + trial % 5, random));
+    message_of_damaged(in_folder("mesh.xdmf"));
   }
 }
 
 // libhdf5 1.10 divides by both.
 TEST_F(Xdmf, ChunksWithoutSizeAreRefused) {
-  write_mesh(in_folder("mesh.xdmf"), two_tets());
+  written(two_tissues());
   const std::string bytes = bytes_of(in_folder("mesh.h5"));
   // A layout message of version 3: chunked, three dimensions; then an address and the dimensions.
   const std::string head = {8, 0, 24, 0, 0, 0, 0, 0, 3, 2, 3};
@@ -192,7 +175,7 @@ TEST_F(Xdmf, ChunksWithoutSizeAreRefused) {
 }
 
 TEST_F(Xdmf, CutHdfIsRefused) {
-  write_mesh(in_folder("mesh.xdmf"), two_tets());
+  written(two_tissues());
   const std::string bytes = bytes_of(in_folder("mesh.h5"));
   for (std::size_t part = 1; part < 40; ++part) {
     put("mesh.h5", bytes.substr(0, part * bytes.size() / 40));

@@ -14,7 +14,7 @@ namespace anatomesh {
 namespace {
 
 /// Cubes of 3 x 3 x 3, by label: 5 left, 2 right of the middle, 9 in it.
-TetMesh three_tissues() {
+TetMesh three_labels() {
   const TissueMesh cubes = testing::cube_mesh({3, 3, 3}, [](int i, int j, int k) {
     return i == 1 && j == 1 && k == 1 ? 9 : i < 1 ? 5 : 2;
   });
@@ -24,7 +24,7 @@ TetMesh three_tissues() {
 }
 
 TEST(Interfaces, AreTheFacesBetweenLabels) {
-  const TetMesh mesh = three_tissues();
+  const TetMesh mesh = three_labels();
   std::map<std::set<VertexId>, std::vector<TetId>> tets_of_face;
   for (TetId t = 0; t < mesh.tets.size(); ++t) {
     for (std::size_t c = 0; c < 4; ++c) {
@@ -55,7 +55,7 @@ TEST(Interfaces, AreTheFacesBetweenLabels) {
 }
 
 TEST(Interfaces, FacesPointOutOfTheirTetrahedra) {
-  const TetMesh mesh = three_tissues();
+  const TetMesh mesh = three_labels();
   for (const Interface& i : interfaces_of(mesh)) {
     for (const TetFace face : i.faces) {
       const auto [a, b, c] = corners_of(mesh, face);
@@ -68,7 +68,7 @@ TEST(Interfaces, FacesPointOutOfTheirTetrahedra) {
 
 TEST(Interfaces, AreSorted) {
   std::vector<std::pair<Label, Label>> pairs;
-  for (const Interface& i : interfaces_of(three_tissues())) {
+  for (const Interface& i : interfaces_of(three_labels())) {
     pairs.emplace_back(i.inside, i.outside);
     EXPECT_TRUE(std::ranges::is_sorted(i.faces, {}, &TetFace::tet));
   }
@@ -76,7 +76,7 @@ TEST(Interfaces, AreSorted) {
 }
 
 TEST(Interfaces, NeedALabelEach) {
-  TetMesh mesh = three_tissues();
+  TetMesh mesh = three_labels();
   mesh.labels.pop_back();
   EXPECT_THROW(interfaces_of(mesh), InvalidInput);
   EXPECT_TRUE(interfaces_of(TetMesh{}).empty());
