@@ -2,10 +2,8 @@
 #include <array>
 #include <vector>
 
-#include "anatomesh/errors.h"
-#include "anatomesh/io.h"
 #include "io/dicom_bytes.h"
-#include "io/io_fixture.h"
+#include "io/image_file_fixture.h"
 
 namespace anatomesh::testing {
 namespace {
@@ -82,15 +80,9 @@ struct Segmentation {
   }
 };
 
-class ReadDicomSegmentation : public IoTest {
+class ReadDicomSegmentation : public MadeImageTest<Segmentation> {
  protected:
-  ImageFile read(const Segmentation& segmentation) const { return read_label_image(put("a.dcm", segmentation.file())); }
-
-  template <typename Expected>
-  std::string message(const Segmentation& segmentation) const {
-    const auto file = put("a.dcm", segmentation.file());
-    return message_of<Expected>(file, [&] { read_label_image(file); });
-  }
+  ReadDicomSegmentation() : MadeImageTest("a.dcm") {}
 };
 
 using Labels = std::vector<Label>;
@@ -107,8 +99,7 @@ TEST_F(ReadDicomSegmentation, FramesOfAnyOrderBecomeOneImage) {
     EXPECT_EQ(file.image.spacing_mm, (Vec3{1, 2, 3}));
     EXPECT_EQ(file.image.origin_mm, (Vec3{5, 6, 7}));
     EXPECT_EQ(file.image.names, (LabelTable{{1, {"Leber", {}}}, {2, {"a tumour", {}}}}));
-    ASSERT_EQ(file.notes.size(), 1U);
-    EXPECT_SAYS(file.notes[0], "1 voxels");
+    EXPECT_SAYS(only_note(file), "1 voxels");
   }
 }
 
@@ -118,10 +109,7 @@ TEST_F(ReadDicomSegmentation, ObliqueStacksAlongTheirNormal) {
                                .orientation = "0.6\\0.8\\0\\0\\0\\-1",
                                .distance = ""});
   EXPECT_EQ(file.image.size[2], 2U);
-  const Mat3 expected = {{{0.6, 0, -0.8}, {0.8, 0, 0.6}, {0, -1, 0}}};
-  for (std::size_t r = 0; r < 3; ++r) {
-    for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(file.image.direction[r][c], expected[r][c], 1e-12);
-  }
+  expect_near(file.image.direction, {{{0.6, 0, -0.8}, {0.8, 0, 0.6}, {0, -1, 0}}}, 1e-12);
   EXPECT_NEAR(file.image.spacing_mm.z, 2, 1e-12);
 }
 
@@ -130,20 +118,20 @@ TEST_F(ReadDicomSegmentation, OneFrameHasTheThicknessOfItsSlice) {
 }
 
 TEST_F(ReadDicomSegmentation, WhatIsWrongIsNamed) {
-  EXPECT_SAYS(message<InvalidInput>({.kind = "FRACTIONAL"}), "FRACTIONAL");
-  EXPECT_SAYS(message<InvalidInput>({.syntax = "1.2.840.10008.1.2.2"}), "1.2.840.10008.1.2.2");
-  EXPECT_SAYS(message<InvalidInput>({.frames = {{}, {1, "5\\6\\8", {}}}}), "frame 2");
-  EXPECT_SAYS(message<InvalidInput>({.frames = {{}, {1, "5.5\\6\\10", {}}}}), "frame 2");
-  EXPECT_SAYS(message<InvalidInput>({.frames = {{}, {1, "5\\6\\9e9", {}}}}), "frame 2");
-  EXPECT_SAYS(message<InvalidInput>({.orientation = "1\\0\\0\\1\\0\\0"}), "direction");
-  EXPECT_SAYS(message<InvalidInput>({.distance = "0"}), "spacing");
-  EXPECT_SAYS(message<InvalidInput>({.distance = "nan"}), "spacing");
-  EXPECT_SAYS(message<IoError>({.orientation = "1\\0\\0\\0\\1"}), "ImageOrientationPatient");
-  EXPECT_SAYS(message<IoError>({.frames = {{3, "5\\6\\7", {}}}}), "segment 3");
-  EXPECT_SAYS(message<IoError>({.frames = {{1, "5\\six\\7", {}}}}), "ImagePositionPatient");
-  EXPECT_SAYS(message<IoError>({.frames = {}}), "PerFrameFunctionalGroupsSequence");
-  EXPECT_SAYS(message<IoError>({.frame_count = "7"}), "NumberOfFrames");
-  EXPECT_SAYS(message<IoError>({.frames = std::vector<Frame>(9), .missing = 3}), "4 of the 7 bytes");
+  EXPECT_SAYS(refused<InvalidInput>({.kind = "FRACTIONAL"}), "FRACTIONAL");
+  EXPECT_SAYS(refused<InvalidInput>({.syntax = "1.2.840.10008.1.2.2"}), "1.2.840.10008.1.2.2");
+  EXPECT_SAYS(refused<InvalidInput>({.frames = {{}, {1, "5\\6\\8", {}}}}), "frame 2");
+  EXPECT_SAYS(refused<InvalidInput>({.frames = {{}, {1, "5.5\\6\\10", {}}}}), "frame 2");
+  EXPECT_SAYS(refused<InvalidInput>({.frames = {{}, {1, "5\\6\\9e9", {}}}}), "frame 2");
+  EXPECT_SAYS(refused<InvalidInput>({.orientation = "1\\0\\0\\1\\0\\0"}), "direction");
+  EXPECT_SAYS(refused<InvalidInput>({.distance = "0"}), "spacing");
+  EXPECT_SAYS(refused<InvalidInput>({.distance = "nan"}), "spacing");
+  EXPECT_SAYS(refused<IoError>({.orientation = "1\\0\\0\\0\\1"}), "ImageOrientationPatient");
+  EXPECT_SAYS(refused<IoError>({.frames = {{3, "5\\6\\7", {}}}}), "segment 3");
+  EXPECT_SAYS(refused<IoError>({.frames = {{1, "5\\six\\7", {}}}}), "ImagePositionPatient");
+  EXPECT_SAYS(refused<IoError>({.frames = {}}), "PerFrameFunctionalGroupsSequence");
+  EXPECT_SAYS(refused<IoError>({.frame_count = "7"}), "NumberOfFrames");
+  EXPECT_SAYS(refused<IoError>({.frames = std::vector<Frame>(9), .missing = 3}), "4 of the 7 bytes");
 }
 
 TEST_F(ReadDicomSegmentation, AFolderIsToldToNameTheFile) {

@@ -4,9 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "anatomesh/errors.h"
-#include "anatomesh/io.h"
-#include "io/io_fixture.h"
+#include "io/image_file_fixture.h"
 #include "io/nifti_bytes.h"
 #include "support/test_images.h"
 
@@ -32,14 +30,8 @@ std::string raw(const std::vector<Value>& values) {
   return bytes;
 }
 
-class ReadImage : public IoTest {
+class ReadImage : public ImageFileTest {
  protected:
-  template <typename Expected>
-  std::string refused(const std::string& name, const std::string& bytes) const {
-    const auto file = put(name, bytes);
-    return message_of<Expected>(file, [&] { read_label_image(file); });
-  }
-
   template <typename Value>
   void expect_kept(const std::string& type, std::int16_t nifti_type, std::vector<Value> largest) const {
     largest.resize(8);
@@ -47,8 +39,8 @@ class ReadImage : public IoTest {
     NiftiBytes nifti;
     nifti.dim = {3, 2, 2, 2, 1, 1, 1, 1};
     nifti.set_voxels(nifti_type, largest);
-    EXPECT_EQ(read_label_image(put(type + ".nii", nifti.file())).image.voxels, expected) << type;
-    EXPECT_EQ(read_label_image(put(type + ".nrrd", nrrd(type, "", raw(largest)))).image.voxels, expected) << type;
+    EXPECT_EQ(image_in(type + ".nii", nifti.file()).image.voxels, expected) << type;
+    EXPECT_EQ(image_in(type + ".nrrd", nrrd(type, "", raw(largest))).image.voxels, expected) << type;
   }
 };
 
@@ -88,16 +80,12 @@ struct Format {
   double tolerance;
 };
 
-void expect_same(const LabelImage& actual, const LabelImage& expected, double tolerance, const std::string& what) {
-  EXPECT_EQ(actual.size, expected.size) << what;
-  EXPECT_EQ(actual.voxels, expected.voxels) << what;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    EXPECT_NEAR(actual.spacing_mm[axis], expected.spacing_mm[axis], tolerance) << what;
-    EXPECT_NEAR(actual.origin_mm[axis], expected.origin_mm[axis], 100 * tolerance) << what;
-    for (std::size_t row = 0; row < 3; ++row) {
-      EXPECT_NEAR(actual.direction[row][axis], expected.direction[row][axis], tolerance) << what;
-    }
-  }
+void expect_same(const LabelImage& actual, const LabelImage& expected, double tolerance) {
+  EXPECT_EQ(actual.size, expected.size);
+  EXPECT_EQ(actual.voxels, expected.voxels);
+  expect_near(actual.spacing_mm, expected.spacing_mm, tolerance);
+  expect_near(actual.origin_mm, expected.origin_mm, 100 * tolerance);
+  expect_near(actual.direction, expected.direction, tolerance);
 }
 
 TEST_F(ReadImage, RoundTripsInEveryFormat) {
@@ -110,9 +98,10 @@ TEST_F(ReadImage, RoundTripsInEveryFormat) {
   for (const Format format : {Format{".nii", 1e-6}, Format{".nii.gz", 1e-6}, Format{".nrrd", 1e-12},
                               Format{".mha", 1e-6}, Format{".mnc", 1e-6}}) {
     for (const NamedImage& image : images) {
+      SCOPED_TRACE(image.name + format.extension);
       const auto file = in_folder(image.name + format.extension);
       write_label_image(file, image.image);
-      expect_same(read_label_image(file).image, image.image, format.tolerance, file.filename().string());
+      expect_same(read_label_image(file).image, image.image, format.tolerance);
     }
   }
 }
@@ -123,8 +112,8 @@ TEST_F(ReadImage, VoxelsInAFileOfTheirOwn) {
   put("voxels.raw", voxels);
   const std::string meta =
       "ObjectType = Image\nNDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\nElementDataFile = voxels.raw\n";
-  EXPECT_EQ(read_label_image(put("image.mhd", meta)).image.voxels, expected);
-  EXPECT_EQ(read_label_image(put("image.nhdr", nrrd("uint8", "data file: voxels.raw", ""))).image.voxels, expected);
+  EXPECT_EQ(image_in("image.mhd", meta).image.voxels, expected);
+  EXPECT_EQ(image_in("image.nhdr", nrrd("uint8", "data file: voxels.raw", "")).image.voxels, expected);
 }
 
 TEST_F(ReadImage, SpacingMustBePositive) {

@@ -2,9 +2,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "anatomesh/errors.h"
-#include "anatomesh/io.h"
-#include "io/io_fixture.h"
+#include "io/image_file_fixture.h"
 #include "support/test_images.h"
 
 namespace anatomesh::testing {
@@ -38,8 +36,7 @@ TEST_F(ReadMasks, AreLabelledInTheirOrder) {
             (LabelTable{{1, {"liver", {}}}, {2, {"vessels", {}}}, {3, {"tumour.v2", {}}}, {4, {"rest", {}}}}));
   EXPECT_EQ(file.image.spacing_mm, grid_.spacing_mm);
   EXPECT_EQ(file.image.origin_mm, grid_.origin_mm);
-  ASSERT_EQ(file.notes.size(), 1U);
-  EXPECT_SAYS(file.notes[0], "3 voxels");
+  EXPECT_SAYS(only_note(file), "3 voxels");
 }
 
 TEST_F(ReadMasks, ObliqueAndLeftHandedGridsStayTheirs) {
@@ -47,17 +44,14 @@ TEST_F(ReadMasks, ObliqueAndLeftHandedGridsStayTheirs) {
     grid_ = image;
     const ImageFile file = read_label_masks({mask("a.nrrd", {0}), mask("b.nii.gz", {1})});
     EXPECT_EQ(file.image.voxels[1], 2U);
-    for (std::size_t r = 0; r < 3; ++r) {
-      for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(file.image.direction[r][c], image.direction[r][c], 1e-6);
-    }
+    expect_near(file.image.direction, image.direction, 1e-6);
   }
 }
 
 TEST_F(ReadMasks, AnEmptyMaskIsTold) {
   const ImageFile file = read_label_masks({mask("a.nrrd", {0}), mask("b.nrrd", {})});
-  ASSERT_EQ(file.notes.size(), 1U);
-  EXPECT_SAYS(file.notes[0], "b.nrrd");
-  EXPECT_SAYS(file.notes[0], "labelled 2");
+  EXPECT_SAYS(only_note(file), "b.nrrd");
+  EXPECT_SAYS(only_note(file), "labelled 2");
 }
 
 TEST_F(ReadMasks, OneIsEnoughNoneIsNot) {

@@ -9,9 +9,7 @@
 #include <limits>
 #include <vector>
 
-#include "anatomesh/errors.h"
-#include "anatomesh/io.h"
-#include "io/io_fixture.h"
+#include "io/image_file_fixture.h"
 
 namespace anatomesh::testing {
 namespace {
@@ -60,15 +58,9 @@ struct Mgh {
   }
 };
 
-class ReadMgh : public IoTest {
+class ReadMgh : public MadeImageTest<Mgh> {
  protected:
-  ImageFile read(const Mgh& mgh) const { return read_label_image(put("a.mgh", mgh.file())); }
-
-  template <typename Expected>
-  std::string message(const Mgh& mgh) const {
-    const auto file = put("a.mgh", mgh.file());
-    return message_of<Expected>(file, [&] { read_label_image(file); });
-  }
+  ReadMgh() : MadeImageTest("a.mgh") {}
 };
 
 TEST_F(ReadMgh, PlaceIsThatOfTheCentre) {
@@ -82,12 +74,8 @@ TEST_F(ReadMgh, PlaceIsThatOfTheCentre) {
 TEST_F(ReadMgh, ObliqueAndLeftHanded) {
   const LabelImage image = read({.axes = {0.6F, 0.8F, 0, 0.8F, -0.6F, 0, 0, 0, 1}, .centre = {0, 0, 0}}).image;
   const Mat3 expected = {{{-0.6, -0.8, 0}, {-0.8, 0.6, 0}, {0, 0, 1}}};
-  for (std::size_t r = 0; r < 3; ++r) {
-    for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(image.direction[r][c], expected[r][c], 1e-7);
-  }
-  EXPECT_NEAR(image.origin_mm.x, 0.6 * 2 + 0.8 * 3, 1e-6);
-  EXPECT_NEAR(image.origin_mm.y, 0.8 * 2 - 0.6 * 3, 1e-6);
-  EXPECT_NEAR(image.origin_mm.z, -3, 1e-6);
+  expect_near(image.direction, expected, 1e-7);
+  expect_near(image.origin_mm, {0.6 * 2 + 0.8 * 3, 0.8 * 2 - 0.6 * 3, -3}, 1e-6);
 }
 
 TEST_F(ReadMgh, WithoutPlaceItIsCoronalAsInFreeSurfer) {
@@ -95,8 +83,7 @@ TEST_F(ReadMgh, WithoutPlaceItIsCoronalAsInFreeSurfer) {
   EXPECT_EQ(file.image.spacing_mm, (Vec3{1, 1, 1}));
   EXPECT_EQ(file.image.direction, (Mat3{{{1, 0, 0}, {0, 0, -1}, {0, -1, 0}}}));
   EXPECT_EQ(file.image.origin_mm, (Vec3{-2, 1, 1.5}));
-  ASSERT_EQ(file.notes.size(), 1U);
-  EXPECT_SAYS(file.notes[0], "does not say where it lies");
+  EXPECT_SAYS(only_note(file), "does not say where it lies");
 }
 
 TEST_F(ReadMgh, VoxelsOfAllTypes) {
@@ -132,25 +119,25 @@ TEST_F(ReadMgh, CompressedAndWithWhatFollowsTheVoxels) {
 }
 
 TEST_F(ReadMgh, WhatIsWrongIsNamed) {
-  EXPECT_SAYS(message<InvalidInput>({.size = {4, 3, 2, 5}}), "5 frames");
-  EXPECT_SAYS(message<InvalidInput>({.size = {4, 0, 2, 1}}), "4 x 0 x 2");
-  EXPECT_SAYS(message<InvalidInput>({.size = {4, -3, 2, 1}}), "4 x -3 x 2");
-  EXPECT_SAYS(message<InvalidInput>({.type = 7}), "MGH type 7");
-  EXPECT_SAYS(message<InvalidInput>({.spacing = {1, 0, 1}}), "1, 0, 1");
-  EXPECT_SAYS(message<InvalidInput>({.spacing = {1, NAN, 1}}), "spacing");
-  EXPECT_SAYS(message<InvalidInput>({.centre = {INFINITY, 0, 0}}), "origin");
-  EXPECT_SAYS(message<InvalidInput>({.axes = {1, 0, 0, 0.5F, 1, 0, 0, 0, 1}}), "direction");
-  EXPECT_SAYS(message<InvalidInput>({.axes = {}}), "direction");
-  EXPECT_SAYS(message<IoError>({.version = 348}), "version is 348");
-  EXPECT_SAYS(message<IoError>({.voxels = std::string(23, '\0')}), "23 of the 24 bytes");
+  EXPECT_SAYS(refused<InvalidInput>({.size = {4, 3, 2, 5}}), "5 frames");
+  EXPECT_SAYS(refused<InvalidInput>({.size = {4, 0, 2, 1}}), "4 x 0 x 2");
+  EXPECT_SAYS(refused<InvalidInput>({.size = {4, -3, 2, 1}}), "4 x -3 x 2");
+  EXPECT_SAYS(refused<InvalidInput>({.type = 7}), "MGH type 7");
+  EXPECT_SAYS(refused<InvalidInput>({.spacing = {1, 0, 1}}), "1, 0, 1");
+  EXPECT_SAYS(refused<InvalidInput>({.spacing = {1, NAN, 1}}), "spacing");
+  EXPECT_SAYS(refused<InvalidInput>({.centre = {INFINITY, 0, 0}}), "origin");
+  EXPECT_SAYS(refused<InvalidInput>({.axes = {1, 0, 0, 0.5F, 1, 0, 0, 0, 1}}), "direction");
+  EXPECT_SAYS(refused<InvalidInput>({.axes = {}}), "direction");
+  EXPECT_SAYS(refused<IoError>({.version = 348}), "version is 348");
+  EXPECT_SAYS(refused<IoError>({.voxels = std::string(23, '\0')}), "23 of the 24 bytes");
   constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max();
-  EXPECT_SAYS(message<IoError>({.size = {kMost, kMost, kMost, 1}, .type = 1}), "cannot hold");
+  EXPECT_SAYS(refused<IoError>({.size = {kMost, kMost, kMost, 1}, .type = 1}), "cannot hold");
   Mgh fractional;
   fractional.set_voxels(3, std::vector<float>(24, 1.5F));
-  EXPECT_SAYS(message<InvalidInput>(fractional), "1.5");
+  EXPECT_SAYS(refused<InvalidInput>(fractional), "1.5");
   Mgh negative;
   negative.set_voxels(4, std::vector<std::int16_t>(24, -2));
-  EXPECT_SAYS(message<InvalidInput>(negative), "-2");
+  EXPECT_SAYS(refused<InvalidInput>(negative), "-2");
 }
 
 TEST_F(ReadMgh, TruncatedHeaders) {

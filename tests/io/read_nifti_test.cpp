@@ -2,36 +2,16 @@
 #include <cstdint>
 #include <limits>
 
-#include "anatomesh/errors.h"
-#include "anatomesh/io.h"
-#include "io/io_fixture.h"
+#include "io/image_file_fixture.h"
 #include "io/nifti_bytes.h"
 
 namespace anatomesh::testing {
 namespace {
 
-class ReadNifti : public IoTest {
+class ReadNifti : public MadeImageTest<NiftiBytes> {
  protected:
-  ImageFile read(const NiftiBytes& nifti) const { return read_label_image(put("image.nii", nifti.file())); }
-
-  template <typename Expected>
-  std::string refused(const NiftiBytes& nifti) const {
-    const auto file = put("image.nii", nifti.file());
-    return message_of<Expected>(file, [&] { read_label_image(file); });
-  }
+  ReadNifti() : MadeImageTest("image.nii") {}
 };
-
-void expect_near(Vec3 actual, Vec3 expected, double tolerance) {
-  for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_NEAR(actual[axis], expected[axis], tolerance) << "axis " << axis;
-}
-
-void expect_direction(const Mat3& actual, const Mat3& expected) {
-  for (std::size_t row = 0; row < 3; ++row) {
-    for (std::size_t column = 0; column < 3; ++column) {
-      EXPECT_NEAR(actual[row][column], expected[row][column], 1e-6) << row << ", " << column;
-    }
-  }
-}
 
 constexpr Mat3 kRasAxes = {{{-1, 0, 0}, {0, -1, 0}, {0, 0, 1}}};
 
@@ -50,17 +30,16 @@ TEST_F(ReadNifti, SformIsUsedWhereFormsDisagree) {
   const ImageFile file = read(nifti);
   expect_near(file.image.spacing_mm, {1.5, 2.5, 3.5}, 1e-12);
   expect_near(file.image.origin_mm, {-1, -2, 3}, 1e-12);
-  expect_direction(file.image.direction, {{{0, 0, 1}, {-1, 0, 0}, {0, 1, 0}}});
-  ASSERT_EQ(file.notes.size(), 1U);
-  EXPECT_SAYS(file.notes[0], "the sform is used");
+  expect_near(file.image.direction, {{{0, 0, 1}, {-1, 0, 0}, {0, 1, 0}}}, 1e-6);
+  EXPECT_SAYS(only_note(file), "the sform is used");
 }
 
 TEST_F(ReadNifti, SformWithReflectionIsUsed) {
   NiftiBytes nifti;
   nifti.srow[0] = {-1, 0, 0, 13};
   const ImageFile file = read(nifti);
-  expect_direction(file.image.direction, {{{1, 0, 0}, {0, -1, 0}, {0, 0, 1}}});
-  EXPECT_SAYS(file.notes.at(0), "disagree by up to 3");
+  expect_near(file.image.direction, {{{1, 0, 0}, {0, -1, 0}, {0, 0, 1}}}, 1e-6);
+  EXPECT_SAYS(only_note(file), "disagree by up to 3");
 }
 
 TEST_F(ReadNifti, QformIsUsedWhereSformCodeIsZero) {
@@ -70,7 +49,7 @@ TEST_F(ReadNifti, QformIsUsedWhereSformCodeIsZero) {
   nifti.quatern = {0, 0, std::sqrt(0.5F)};  // a quarter turn about z
   nifti.pixdim[0] = -1;                     // and the third axis reflected
   const ImageFile file = read(nifti);
-  expect_direction(file.image.direction, {{{0, 1, 0}, {-1, 0, 0}, {0, 0, -1}}});
+  expect_near(file.image.direction, {{{0, 1, 0}, {-1, 0, 0}, {0, 0, -1}}}, 1e-6);
   expect_near(file.image.origin_mm, {-10, -20, 30}, 1e-12);
   EXPECT_TRUE(file.notes.empty());
 }
@@ -80,7 +59,7 @@ TEST_F(ReadNifti, QformIsUsedWhereSformIsSheared) {
   nifti.srow[0][1] = 0.5F;
   const ImageFile file = read(nifti);
   EXPECT_EQ(file.image.direction, kRasAxes);
-  EXPECT_SAYS(file.notes.at(0), "the qform is used");
+  EXPECT_SAYS(only_note(file), "the qform is used");
 }
 
 TEST_F(ReadNifti, ShearedSformAloneIsRefused) {
@@ -112,7 +91,7 @@ TEST_F(ReadNifti, NoFormIsNoted) {
   nifti.qform_code = nifti.sform_code = 0;
   const ImageFile file = read(nifti);
   EXPECT_EQ(file.image.spacing_mm, (Vec3{1, 2, 3}));
-  EXPECT_SAYS(file.notes.at(0), "does not say where it lies");
+  EXPECT_SAYS(only_note(file), "does not say where it lies");
 }
 
 TEST_F(ReadNifti, UnitsAreConverted) {
@@ -137,7 +116,7 @@ TEST_F(ReadNifti, OtherByteOrder) {
   NiftiBytes nifti;
   nifti.srow[0] = {-1, 0, 0, 13};
   nifti.voxels[5] = 7;
-  const ImageFile file = read_label_image(put("image.nii", nifti.header(true) + std::string(4, '\0') + nifti.voxels));
+  const ImageFile file = image_in("image.nii", nifti.header(true) + std::string(4, '\0') + nifti.voxels);
   EXPECT_EQ(file.image.voxels[5], 7U);
   EXPECT_EQ(file.image.origin_mm, (Vec3{-13, -20, 30}));
 }
@@ -170,7 +149,7 @@ TEST_F(ReadNifti, Analyze) {
   EXPECT_EQ(file.image.size, (std::array<std::size_t, 3>{4, 3, 2}));
   EXPECT_EQ(file.image.spacing_mm, (Vec3{1, 2, 3}));
   EXPECT_EQ(file.image.voxels[5], 7U);
-  EXPECT_SAYS(file.notes.at(0), "Analyze");
+  EXPECT_SAYS(only_note(file), "Analyze");
 }
 
 TEST_F(ReadNifti, TrailingDimensionsOfOneAreDropped) {
@@ -238,8 +217,7 @@ TEST_F(ReadNifti, TruncatedAtAnyPlace) {
   const std::string whole = nifti.file();
   for (const std::size_t length :
        {std::size_t{1}, std::size_t{100}, std::size_t{347}, std::size_t{352}, whole.size() - 1}) {
-    const auto file = put("image.nii", whole.substr(0, length));
-    message_of<IoError>(file, [&] { read_label_image(file); });
+    ImageFileTest::refused<IoError>("image.nii", whole.substr(0, length));
   }
 }
 
@@ -254,8 +232,7 @@ TEST_F(ReadNifti, Nifti2IsNamed) {
   const std::int32_t size = 540;
   std::memcpy(bytes.data(), &size, sizeof(size));
   std::memcpy(bytes.data() + 4, "n+2\0\r\n\032\n", 8);
-  const auto file = put("image.nii", bytes);
-  EXPECT_SAYS(message_of<InvalidInput>(file, [&] { read_label_image(file); }), "NIfTI-2");
+  EXPECT_SAYS(ImageFileTest::refused<InvalidInput>("image.nii", bytes), "NIfTI-2");
 }
 
 }  // namespace

@@ -1,10 +1,10 @@
 // Segmentations of 3D Slicer, written byte by byte as Slicer does.
+#include <initializer_list>
 #include <sstream>
+#include <utility>
 #include <vector>
 
-#include "anatomesh/errors.h"
-#include "anatomesh/io.h"
-#include "io/io_fixture.h"
+#include "io/image_file_fixture.h"
 
 namespace anatomesh::testing {
 namespace {
@@ -41,14 +41,17 @@ std::string segment(int n, const std::string& name, int value, int layer, const 
          "Tags:=Segmentation.Status:inprogress|\n";
 }
 
-class ReadSegmentation : public IoTest {
- protected:
-  ImageFile read(const SegNrrd& nrrd) const { return read_label_image(put("a.seg.nrrd", nrrd.file())); }
+/// Two layers: the values of a voxel in each of them, from the first voxel on; 0 is the rest.
+SegNrrd two_layers(std::string keys, std::initializer_list<std::pair<char, char>> voxels = {}) {
+  SegNrrd nrrd = {.layers = 2, .keys = std::move(keys), .voxels = {}};
+  for (const auto& [first, second] : voxels) nrrd.voxels += {first, second};
+  nrrd.voxels.resize(24);
+  return nrrd;
+}
 
-  std::string message(const SegNrrd& nrrd) const {
-    const auto file = put("a.seg.nrrd", nrrd.file());
-    return message_of<InvalidInput>(file, [&] { read_label_image(file); });
-  }
+class ReadSegmentation : public MadeImageTest<SegNrrd> {
+ protected:
+  ReadSegmentation() : MadeImageTest("a.seg.nrrd") {}
 };
 
 using Labels = std::vector<Label>;
@@ -76,19 +79,18 @@ TEST_F(ReadSegmentation, AValueWithoutASegmentStaysALabelInOneLayer) {
 TEST_F(ReadSegmentation, LaterSegmentsWinWhereLayersOverlap) {
   // Segment 1 lies in layer 0 and comes after segment 0 of layer 1; segment 2 comes last.
   const std::string keys = segment(0, "vessel", 4, 1) + segment(1, "liver", 2, 0) + segment(2, "tumour", 9, 1);
-  const std::string voxels("\2\0\2\4\2\11\0\4\0\11\0\0\0\0\0\0\0\0\0\0\0\0\2\0", 24);
-  const ImageFile file = read({.layers = 2, .keys = keys, .voxels = voxels});
+  const ImageFile file = read(two_layers(
+      keys, {{2, 0}, {2, 4}, {2, 9}, {0, 4}, {0, 9}, {0, 0}, {0, 0}, {0, 0}, {0, 0}, {0, 0}, {0, 0}, {2, 0}}));
   EXPECT_EQ(file.image.voxels, (Labels{2, 2, 9, 4, 9, 0, 0, 0, 0, 0, 0, 2}));
   EXPECT_EQ(file.image.names.at(9).name, "tumour");
-  ASSERT_EQ(file.notes.size(), 1U);
-  EXPECT_SAYS(file.notes[0], "2 voxels");
-  EXPECT_SAYS(file.notes[0], "a.seg.nrrd");
+  EXPECT_SAYS(only_note(file), "2 voxels");
+  EXPECT_SAYS(only_note(file), "a.seg.nrrd");
 }
 
 TEST_F(ReadSegmentation, EqualValuesAreNumbered) {
   const std::string keys = segment(0, "liver", 1, 0) + segment(1, "vessel", 1, 1) + segment(2, "tumour", 2, 0);
-  const std::string voxels("\1\0\0\1\2\0\1\1\0\0\0\0\0\0\0\0\0\0\0\0\0\0\2\1", 24);
-  const ImageFile file = read({.layers = 2, .keys = keys, .voxels = voxels});
+  const ImageFile file = read(two_layers(
+      keys, {{1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 0}, {0, 0}, {0, 0}, {0, 0}, {0, 0}, {0, 0}, {0, 0}, {2, 1}}));
   EXPECT_EQ(file.image.voxels, (Labels{1, 2, 3, 2, 0, 0, 0, 0, 0, 0, 0, 3}));
   EXPECT_EQ(file.image.names.at(2).name, "vessel");
   ASSERT_EQ(file.notes.size(), 2U);
@@ -99,19 +101,16 @@ TEST_F(ReadSegmentation, EqualValuesAreNumbered) {
 TEST_F(ReadSegmentation, OldFilesHaveALayerASegment) {
   const std::string keys =
       "Segment0_ID:=a\nSegment0_Name:=liver\nSegment1_ID:=b\nSegment1_Name:=\nSegment1_Color:=red\n";
-  const std::string voxels("\1\0\0\1\1\1\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0", 24);
-  const ImageFile file = read({.layers = 2, .keys = keys, .voxels = voxels});
+  const ImageFile file = read(two_layers(keys, {{1, 0}, {0, 1}, {1, 1}}));
   EXPECT_EQ(file.image.voxels, (Labels{1, 2, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0}));
   EXPECT_EQ(file.image.names, (LabelTable{{1, {"liver", {}}}, {2, {"b", {}}}}));
 }
 
 TEST_F(ReadSegmentation, ValuesOfNoSegmentAreTold) {
-  const std::string voxels("\1\0\0\5\3\1\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0", 24);
-  const ImageFile file = read({.layers = 2, .keys = segment(0, "a", 1, 0) + segment(1, "b", 2, 1), .voxels = voxels});
+  const ImageFile file = read(two_layers(segment(0, "a", 1, 0) + segment(1, "b", 2, 1), {{1, 0}, {0, 5}, {3, 1}}));
   EXPECT_EQ(file.image.voxels, (Labels{1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}));
-  ASSERT_EQ(file.notes.size(), 1U);
-  EXPECT_SAYS(file.notes[0], "2 voxels");
-  EXPECT_SAYS(file.notes[0], "no segment");
+  EXPECT_SAYS(only_note(file), "2 voxels");
+  EXPECT_SAYS(only_note(file), "no segment");
 }
 
 TEST_F(ReadSegmentation, ObliqueAndLeftHandedLayersLieWhereTheFileSays) {
@@ -121,10 +120,7 @@ TEST_F(ReadSegmentation, ObliqueAndLeftHandedLayersLieWhereTheFileSays) {
                                  .directions = oblique,
                                  .keys = segment(0, "a", 1, 0),
                                  .voxels = std::string(12 * layers, '\1')});
-    const Mat3 expected = {{{0.6, -0.8, 0}, {0.8, 0.6, 0}, {0, 0, -1}}};
-    for (std::size_t r = 0; r < 3; ++r) {
-      for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(file.image.direction[r][c], expected[r][c], 1e-12);
-    }
+    expect_near(file.image.direction, {{{0.6, -0.8, 0}, {0.8, 0.6, 0}, {0, 0, -1}}}, 1e-12);
     EXPECT_NEAR(file.image.spacing_mm.y, 2, 1e-12);
     EXPECT_EQ(file.image.origin_mm, (Vec3{-10, 20, 30}));
   }
@@ -139,26 +135,24 @@ TEST_F(ReadSegmentation, LabelsOf16BitsInManyVoxels) {
       SegNrrd{.layers = 2, .keys = segment(0, "a", 300, 0) + segment(1, "b", 1, 1), .voxels = voxels, .type = "uint16"}
           .file();
   text.replace(text.find("3 2 2"), 5, "60 60 60");
-  const ImageFile file = read_label_image(put("a.seg.nrrd", text));
+  const ImageFile file = image_in("a.seg.nrrd", text);
   for (std::size_t n = 0; n < file.image.voxels.size(); ++n) ASSERT_EQ(file.image.voxels[n], n % 7 == 0 ? 300U : 1U);
 }
 
 TEST_F(ReadSegmentation, WhatIsWrongIsNamed) {
-  const std::string voxels(24, '\0');
-  EXPECT_SAYS(message({.layers = 2, .keys = segment(0, "a", 1, 2), .voxels = voxels}), "Segment0_Layer 2");
-  EXPECT_SAYS(message({.layers = 2, .keys = segment(0, "a", 0, 1), .voxels = voxels}), "0 is the background");
-  const std::string same =
-      message({.layers = 2, .keys = segment(0, "a", 3, 1) + segment(1, "b", 3, 1), .voxels = voxels});
+  EXPECT_SAYS(refused<InvalidInput>(two_layers(segment(0, "a", 1, 2))), "Segment0_Layer 2");
+  EXPECT_SAYS(refused<InvalidInput>(two_layers(segment(0, "a", 0, 1))), "0 is the background");
+  const std::string same = refused<InvalidInput>(two_layers(segment(0, "a", 3, 1) + segment(1, "b", 3, 1)));
   EXPECT_SAYS(same, "'a' and 'b', both of value 3 in layer 1");
   for (const char* value : {"-1", "two", "", "4294967296", "1.5"}) {
     const std::string keys = std::string("Segment0_ID:=a\nSegment0_LabelValue:=").append(value).append("\n");
-    EXPECT_SAYS(message({.keys = keys}), "Segment0_LabelValue");
+    EXPECT_SAYS(refused<InvalidInput>({.keys = keys}), "Segment0_LabelValue");
   }
-  EXPECT_SAYS(message({.layers = 2, .voxels = voxels}), "2 numbers a voxel");
+  EXPECT_SAYS(refused<InvalidInput>(two_layers("")), "2 numbers a voxel");
   const std::string fractional("\0\0\0\x3f\0\0\0\x3f", 8);  // 0.5, 0.5
   SegNrrd floats = {.layers = 2, .keys = segment(0, "a", 1, 0), .type = "float"};
   floats.voxels = fractional + std::string(22 * 4, '\0');
-  EXPECT_SAYS(message(floats), "0.5");
+  EXPECT_SAYS(refused<InvalidInput>(floats), "0.5");
 }
 
 TEST_F(ReadSegmentation, TruncatedFilesAreRefused) {

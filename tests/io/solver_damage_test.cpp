@@ -59,7 +59,8 @@ TEST_F(SolverDamage, NeverCrashes) {
     const std::vector<std::string> lines = lines_of(written(name, strip()));
     for (int trial = 0; trial < 400; ++trial) {
       const std::string message = message_of_damaged(put(name, damaged(lines, random)));
-      if (!message.empty()) EXPECT_SAYS(message, "mesh.");
+      if (message.empty()) continue;
+      EXPECT_SAYS(message, "mesh.");
     }
     written("mesh.node", strip());  // both files of the pair whole again
   }
