@@ -7,18 +7,13 @@ import gzip
 import json
 import pathlib
 import struct
-import subprocess
 import sys
 import tempfile
 import unittest
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools"))
-try:
-    import numpy as np
-    from make_vessel_tree import write_nifti
-except ImportError as error:
-    print(f"skipped: {error}")
-    sys.exit(77)
+from demo_meshes import checked, run, run_tests, write_nifti
+
+import numpy as np    # it is there: demo_meshes needs it
 
 TURNED = ((0, -1.8, 0, 12), (2.4, 0, 0, -30), (0, 0, 1.2, 5))    # rows of the sform: a turn about z
 MIRRORED = ((1.8, 0, 0, 7), (0, 2.4, 0, 3), (0, 0, 1.2, -40))    # the same in LPS has a negative determinant
@@ -45,13 +40,11 @@ def write_image(path, voxels, sform):
 class Driver(unittest.TestCase):
     def check(self, sform, *options):
         with tempfile.TemporaryDirectory() as folder:
-            image, mesh, out = (pathlib.Path(folder, name) for name in ("image.nii.gz", "mesh.vtu", "check.json"))
+            image, mesh = (pathlib.Path(folder, name) for name in ("image.nii.gz", "mesh.vtu"))
             write_image(image, balls(7, 250), sform)
-            done = subprocess.run([CGAL, image, "-o", mesh, "--facet-size", "3", "--cell-size", "4", "--facet-distance",
-                                   "0.4", *options], check=True, capture_output=True, text=True)
-            subprocess.run([ANATOMESH, "check", mesh, "--image", image, "--json", out, "--quiet"], check=False,
-                           capture_output=True)
-            return json.loads(done.stdout), json.loads(out.read_text(encoding="utf-8"))["assessment"]
+            done = run(CGAL, image, "-o", mesh, "--facet-size", "3", "--cell-size", "4", "--facet-distance", "0.4",
+                       *options)
+            return json.loads(done.stdout), checked(mesh, "--image", image)
 
     def test_keeps_labels_and_place(self):
         for sform in (TURNED, MIRRORED):
@@ -65,11 +58,11 @@ class Driver(unittest.TestCase):
                     self.assertGreater(measured["summary"]["min_dice"], 0.95)
 
     def test_says_what_is_wrong(self):
-        done = subprocess.run([CGAL, "missing.nii.gz", "-o", "/tmp/mesh.vtu"], capture_output=True, text=True, check=False)
+        done = run(CGAL, "missing.nii.gz", "-o", "/tmp/mesh.vtu", check=False)
         self.assertEqual(done.returncode, 4)
         self.assertIn("missing.nii.gz", done.stderr)
 
 
 if __name__ == "__main__":
-    CGAL, ANATOMESH = sys.argv[1:3]
-    unittest.main(argv=sys.argv[:1])
+    CGAL = sys.argv[1]
+    run_tests()

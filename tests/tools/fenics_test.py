@@ -5,30 +5,25 @@ usage: fenics_test.py ANATOMESH      exit status 77 (skipped) without numpy, or 
 """
 import logging
 import pathlib
-import sys
 import tempfile
 import unittest
 
-try:
-    import numpy as np
-    from surface_meshes import meshes, run, volumes_mm3
-except ImportError as error:
-    print(f"skipped: {error}")
-    sys.exit(77)
+from demo_meshes import checked_volumes_mm3, convert, meshes, nested_balls, run_tests, skip
+
+import numpy as np    # it is there: demo_meshes needs it
 try:
     import dolfinx
     import ufl
     from dolfinx.fem.petsc import LinearProblem
     from mpi4py import MPI
-except ImportError as error:
-    dolfinx, WHY_NO_DOLFINX = None, str(error)
+except ImportError:
+    dolfinx = None
 try:
     import dolfin
-except ImportError as error:
-    dolfin, WHY_NO_DOLFIN = None, str(error)
+except ImportError:
+    dolfin = None
 if not dolfinx and not dolfin:
-    print("skipped: neither DOLFINx nor DOLFIN is installed")
-    sys.exit(77)
+    skip("neither DOLFINx nor DOLFIN is installed")
 
 POISSON = 0.3
 
@@ -80,7 +75,7 @@ class Dolfinx(unittest.TestCase):
             mesh, tissues, _ = read_xdmf(path.with_suffix(".xdmf"))
             dx = ufl.Measure("dx", domain=mesh, subdomain_data=tissues)
             one = dolfinx.fem.Constant(mesh, 1.0)
-            for label, volume in list(volumes_mm3(ANATOMESH, path).items())[:5]:
+            for label, volume in list(checked_volumes_mm3(path).items())[:5]:
                 with self.subTest(mesh=path.name, label=label):
                     self.assertAlmostEqual(assembled(one * dx(label)) / volume, 1, delta=1e-9)
 
@@ -104,7 +99,7 @@ class Dolfinx(unittest.TestCase):
         virtual.x.array.reshape(-1, 3)[held, 2] = 1
         load = ufl.inner(density * ufl.as_vector((0, 0, -9.81)), virtual) * ufl.dx
         reaction = assembled(ufl.inner(stress(u, young), ufl.sym(ufl.grad(virtual))) * ufl.dx) - assembled(load)
-        volume = volumes_mm3(ANATOMESH, MESHES[0])
+        volume = checked_volumes_mm3(MESHES[0])
         self.assertAlmostEqual(reaction / (9.81 * (1e-3 * volume[2] + 3e-3 * volume[7])), 1, delta=1e-8)
         self.assertGreater(np.abs(u.x.array).max(), 0)
 
@@ -135,7 +130,7 @@ class Dolfin(unittest.TestCase):
             file.read(interface, "interface")
         tissues = dolfin.MeshFunction("size_t", mesh, labels)
         dx = dolfin.Measure("dx", domain=mesh, subdomain_data=tissues)
-        for label, volume in volumes_mm3(ANATOMESH, MESHES[0]).items():
+        for label, volume in checked_volumes_mm3(MESHES[0]).items():
             self.assertAlmostEqual(dolfin.assemble(dolfin.Constant(1) * dx(label)) / volume, 1, delta=1e-9)
         tags = dolfin.MeshFunction("size_t", mesh, interface).array()
         self.assertEqual(set(tags[tags < 1000]), {1, 2})    # 2 and 7 meet, and 7's skin
@@ -145,9 +140,8 @@ class Dolfin(unittest.TestCase):
 
 if __name__ == "__main__":
     logging.disable(logging.WARNING)    # of the compiler of forms
-    ANATOMESH = sys.argv[1]
     with tempfile.TemporaryDirectory() as place:
-        MESHES = list(meshes(ANATOMESH, pathlib.Path(place)))
+        MESHES = list(meshes(pathlib.Path(place), nested_balls()).values())
         for mesh_path in MESHES:
-            run(ANATOMESH, "convert", mesh_path, mesh_path.with_suffix(".xdmf"))
-        unittest.main(argv=sys.argv[:1], warnings="ignore")
+            convert(mesh_path, mesh_path.with_suffix(".xdmf"))
+        run_tests(warnings="ignore")

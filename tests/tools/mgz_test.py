@@ -1,22 +1,17 @@
 #!/usr/bin/env python3
 """FreeSurfer volumes as nibabel writes them: the same place and labels as nibabel's NIfTI file of the same image.
 
-usage: mgz_test.py ANATOMESH      exit status 77: nibabel (python3-nibabel) is missing
+usage: mgz_test.py ANATOMESH      exit status 77 (skipped) without numpy or nibabel
 """
 import pathlib
-import subprocess
-import sys
 import tempfile
 import unittest
 
-try:
+from demo_meshes import anatomesh, needed_packages, run_tests
+
+with needed_packages():
     import nibabel
     import numpy
-except ImportError:
-    print("skipped: nibabel is missing (python3-nibabel)")
-    sys.exit(77)
-
-PROGRAM = sys.argv.pop(1) if len(sys.argv) > 1 else "anatomesh"
 
 SIZE = (13, 11, 9)
 TYPES = ("u1", "i2", "i4", "f4")
@@ -54,7 +49,7 @@ def labels():
 
 def info(path):
     """What the program shows of an image, but for its name: numbers as numbers."""
-    shown = subprocess.run([PROGRAM, "info", path], check=True, capture_output=True, text=True).stdout
+    shown = anatomesh("info", path).stdout
     rows = [line.split() for line in shown.splitlines()[1:]]
     return [[float(word) if word.lstrip("-").replace(".", "").isdigit() else word for word in row] for row in rows]
 
@@ -94,14 +89,13 @@ class Mgz(unittest.TestCase):
         for name, place in PLACES.items():
             with self.subTest(place=name):
                 mesh = str(self.folder / "mesh.vtu")
-                subprocess.run([PROGRAM, "mesh", self.write("image.mgz", data, place), "-o", mesh, "--quiet"], check=True)
+                anatomesh("mesh", self.write("image.mgz", data, place), "-o", mesh, "--quiet")
                 nifti = self.write("image.nii", data, place)
-                checked = subprocess.run([PROGRAM, "check", mesh, "--image", nifti, "--quiet", "--no-distances"],
-                                         capture_output=True, text=True)
+                checked = anatomesh("check", mesh, "--image", nifti, "--quiet", "--no-distances", check=False)
                 self.assertEqual(checked.returncode, 0, checked.stdout)
                 share = [line.split()[-2] for line in checked.stdout.splitlines() if line.startswith("voxels right")]
                 self.assertGreater(float(share[0]), 94)
 
 
 if __name__ == "__main__":
-    unittest.main()
+    run_tests()

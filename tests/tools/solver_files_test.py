@@ -6,64 +6,15 @@ usage: solver_files_test.py ANATOMESH      exit status 77 (skipped) without nump
 import pathlib
 import re
 import shutil
-import subprocess
-import sys
 import tempfile
 import unittest
 import xml.etree.ElementTree
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools"))
-try:
+from demo_meshes import Mesh, balls, convert, meshes, needed_packages, run, run_tests
+
+with needed_packages():
     import meshio
     import numpy as np
-    from make_vessel_tree import write_nifti
-except ImportError as error:
-    print(f"skipped: {error}")
-    sys.exit(77)
-
-AAL = pathlib.Path("/usr/share/mricron/templates/aal.nii.gz")
-
-
-def run(*command, folder=None):
-    return subprocess.run([str(word) for word in command], check=True, capture_output=True, text=True, cwd=folder)
-
-
-def balls():
-    """A ball with a core in it, beside another one that it touches."""
-    i, j, k = np.indices((26, 18, 18))
-    voxels = np.zeros((26, 18, 18), np.uint8)
-    voxels[(i - 8) ** 2 + (j - 9) ** 2 + (k - 9) ** 2 <= 42] = 3
-    voxels[(i - 8) ** 2 + (j - 9) ** 2 + (k - 9) ** 2 <= 9] = 9
-    voxels[(i - 19) ** 2 + (j - 9) ** 2 + (k - 9) ** 2 <= 25] = 17
-    return voxels
-
-
-class Mesh:
-    """Points, tetrahedra and labels, and what follows from them."""
-
-    def __init__(self, points, tets, labels):
-        self.points, self.tets, self.labels = np.asarray(points, float), np.asarray(tets, int), np.ravel(labels).astype(int)
-        a, b, c, d = (self.points[self.tets[:, n]] for n in range(4))
-        self.volumes = np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a) / 6
-
-    def outward_faces(self):
-        """(corners, label inside, label outside or 0) of all faces where labels meet, as three arrays."""
-        corners = np.concatenate([self.tets[:, side] for side in ((1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1))])
-        labels = np.tile(self.labels, 4)
-        order = np.lexsort((labels, *np.sort(corners, axis=1).T))
-        corners, labels = corners[order], labels[order]
-        same = (np.sort(corners[1:], axis=1) == np.sort(corners[:-1], axis=1)).all(axis=1)
-        first, second = np.append(same, False), np.insert(same, 0, False)
-        outside = np.where(first, np.append(labels[1:], 0), 0)
-        shown = ~second & (labels != outside)
-        return corners[shown], labels[shown], outside[shown]
-
-    def surfaces(self):
-        """Faces, corners ascending, by the two labels that meet there; 0 is the outside."""
-        found = {}
-        for corners, inside, outside in zip(*(array.tolist() for array in self.outward_faces())):
-            found.setdefault((inside, outside), set()).add(tuple(sorted(corners)))
-        return found
 
 
 def vertices(faces):
@@ -90,13 +41,8 @@ class Folder(unittest.TestCase):
         if cls.holder:
             return
         Folder.holder = tempfile.TemporaryDirectory()
-        write_nifti(cls.folder() / "balls.nii.gz", balls(), 1.0)
-        images = {"balls": (cls.folder() / "balls.nii.gz", "4")}
-        if AAL.exists():
-            images["aal"] = (AAL, "32")
-        for name, (image, size_mm) in images.items():
-            run(ANATOMESH, "mesh", image, "-o", cls.folder() / f"{name}.vtk", "--bcc-size", size_mm, "--quiet")
-            mesh = meshio.read(cls.folder() / f"{name}.vtk")
+        for name, path in meshes(cls.folder(), balls(), "--bcc-size", "4").items():
+            mesh = meshio.read(path)
             cls.meshes[name] = Mesh(mesh.points, mesh.cells_dict["tetra"], mesh.cell_data["label"][0])
 
     @classmethod
@@ -104,9 +50,7 @@ class Folder(unittest.TestCase):
         return pathlib.Path(cls.holder.name)
 
     def converted(self, name, extension):
-        out = self.folder() / f"{name}{extension}"
-        run(ANATOMESH, "convert", self.folder() / f"{name}.vtk", out)
-        return out
+        return convert(self.folder() / f"{name}.vtk", self.folder() / f"{name}{extension}")
 
     def each(self, check, extension):
         for name, mesh in self.meshes.items():
@@ -163,8 +107,7 @@ class WrittenByMeshio(Folder):
                 sets = {f"s{label}": [np.flatnonzero(mesh.labels == label)] for label in np.unique(mesh.labels)}
                 meshio.Mesh(mesh.points, [("tetra", mesh.tets)], cell_data=cell_data,
                             cell_sets=sets).write(self.folder() / f"other{extension}")
-                run(ANATOMESH, "convert", self.folder() / f"other{extension}", self.folder() / "copy.node")
-                read = meshio.read(self.folder() / "copy.node")
+                read = meshio.read(convert(self.folder() / f"other{extension}", self.folder() / "copy.node"))
                 np.testing.assert_allclose(read.points, mesh.points, rtol=1e-10 if extension == ".bdf" else 0, atol=0)
                 np.testing.assert_array_equal(read.cells_dict["tetra"], mesh.tets)
                 expected = mesh.labels if cell_data else np.searchsorted(np.unique(mesh.labels), mesh.labels) + 1
@@ -233,8 +176,8 @@ class ReadByTetGen(Folder):
 class SolvedByCalculix(Folder):
     """Loads whose reactions are known without solving anything."""
 
-    DENSITY = {3: 1.1e-9, 9: 2.7e-9, 17: 0.4e-9}     # tonne/mm^3
-    YOUNG_MPA = {3: 0.003, 9: 0.3, 17: 0.01}
+    DENSITY = {3: 1.1e-9, 7: 2.7e-9, 200: 0.4e-9}     # tonne/mm^3
+    YOUNG_MPA = {3: 0.003, 7: 0.3, 200: 0.01}
     GRAVITY = 9810.0                                  # mm/s^2, against the third axis
 
     def solved(self, load):
@@ -244,8 +187,8 @@ class SolvedByCalculix(Folder):
         for label, young in self.YOUNG_MPA.items():
             deck += [f"*MATERIAL, NAME=M{label}", "*ELASTIC", f"{young}, 0.3", "*DENSITY", f"{self.DENSITY[label]}",
                      f"*SOLID SECTION, ELSET=label_{label}, MATERIAL=M{label}"]
-        deck += ["*BOUNDARY", "label_17_skin, 1, 3", "*STEP", "*STATIC", *load,
-                 "*NODE PRINT, NSET=label_17_skin, TOTALS=ONLY", "RF"]
+        deck += ["*BOUNDARY", "label_200_skin, 1, 3", "*STEP", "*STATIC", *load,
+                 "*NODE PRINT, NSET=label_200_skin, TOTALS=ONLY", "RF"]
         for label in self.YOUNG_MPA:
             deck += [f"*EL PRINT, ELSET=label_{label}, TOTALS=ONLY", "EVOL"]
         (self.folder() / "deck.inp").write_text("\n".join(deck + ["*END STEP", ""]), encoding="ascii")
@@ -257,7 +200,7 @@ class SolvedByCalculix(Folder):
 
     def free_share(self, corners):
         """The share of a load, evenly spread over these corners, that does not lie on held nodes."""
-        return 1 - np.isin(corners, vertices(self.meshes["balls"].surfaces()[17, 0])).mean(axis=1)
+        return 1 - np.isin(corners, vertices(self.meshes["balls"].surfaces()[200, 0])).mean(axis=1)
 
     def test_weight(self):
         """The reactions carry all weight but what lies on the held nodes themselves."""
@@ -282,5 +225,4 @@ class SolvedByCalculix(Folder):
 
 
 if __name__ == "__main__":
-    ANATOMESH = sys.argv[1]
-    unittest.main(argv=sys.argv[:1])
+    run_tests()

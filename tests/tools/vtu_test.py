@@ -3,25 +3,20 @@
 
 usage: vtu_test.py ANATOMESH      exit status 77 (skipped) without numpy, meshio or VTK for Python
 """
-import contextlib
-import io
 import itertools
 import pathlib
-import subprocess
-import sys
 import tempfile
 import unittest
 
-try:
+from demo_meshes import anatomesh, convert, needed_packages, quiet, run_tests
+
+with needed_packages():
     import meshio
     import numpy as np
     from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
     from vtkmodules.vtkCommonCore import vtkPoints, vtkStringArray
     from vtkmodules.vtkCommonDataModel import VTK_TETRA, VTK_TRIANGLE, vtkUnstructuredGrid
     from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader, vtkXMLUnstructuredGridWriter
-except ImportError as error:
-    print(f"skipped: {error}")
-    sys.exit(77)
 
 LABELS = (3, 250)
 NAMES = ("White matter", "Große Vene")
@@ -70,8 +65,7 @@ class Vtu(unittest.TestCase):
         self.kept.cleanup()
 
     def converted(self, path, out="out.vtu"):
-        subprocess.run([ANATOMESH, "convert", path, self.folder / out], check=True, capture_output=True)
-        return self.folder / out
+        return convert(path, self.folder / out)
 
     def expect_tets(self, path, tolerance=0):
         """Text has fewer digits than are needed."""
@@ -136,8 +130,7 @@ class Vtu(unittest.TestCase):
         grid = vtk_grid(self.points, self.tets, self.labels)
         for compressor in ("LZ4", "LZMA"):
             path = self.write(grid, "Appended", 0, compressor, "LittleEndian", "UInt32")
-            done = subprocess.run([ANATOMESH, "convert", path, self.folder / "out.vtu"], check=False, text=True,
-                                  capture_output=True)
+            done = anatomesh("convert", path, self.folder / "out.vtu", check=False)
             self.assertEqual(done.returncode, 3)
             self.assertIn(f"vtk{compressor}DataCompressor", done.stderr)
             self.assertIn("vtkZLibDataCompressor", done.stderr)
@@ -147,7 +140,7 @@ class Vtu(unittest.TestCase):
         for binary, compression, header in ((False, None, None), (True, None, "UInt32"), (True, "zlib", "UInt32"),
                                             (True, "zlib", "UInt64"), (True, None, "UInt64")):
             with self.subTest(binary=binary, compression=compression, header=header):
-                with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
+                with quiet():
                     meshio.vtu.write(self.folder / "in.vtu", mesh, binary=binary, compression=compression,
                                      header_type=header)
                 self.expect_tets(self.folder / "in.vtu", tolerance=0 if binary else 1e-9)
@@ -165,7 +158,4 @@ class Vtu(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
-        sys.exit(__doc__)
-    ANATOMESH = sys.argv.pop()
-    unittest.main()
+    run_tests()

@@ -4,18 +4,16 @@
 usage: xdmf_and_surfaces_test.py ANATOMESH      exit status 77 (skipped) without numpy, h5py or meshio
 """
 import pathlib
-import sys
 import tempfile
 import unittest
 
-try:
+from demo_meshes import (checked_volumes_mm3, convert, is_closed, meshes, needed_packages, nested_balls,
+                         run_tests, volume_inside)
+
+with needed_packages():
     import h5py
     import meshio
     import numpy as np
-    from surface_meshes import is_closed, meshes, run, volume_inside, volumes_mm3
-except ImportError as error:
-    print(f"skipped: {error}")
-    sys.exit(77)
 
 
 def read_stl(path):
@@ -68,7 +66,7 @@ class Files(unittest.TestCase):
     def test_xdmf_as_meshio_reads_it(self):
         for path, expected in MESHES.items():
             with self.subTest(mesh=path.name):
-                run(ANATOMESH, "convert", path, path.with_suffix(".xdmf"))
+                convert(path, path.with_suffix(".xdmf"))
                 self.assert_same(meshio.read(path.with_suffix(".xdmf")), expected)
                 with h5py.File(path.with_suffix(".h5")) as file:
                     self.assertEqual(file["mesh/points"].dtype, np.float64)
@@ -79,14 +77,14 @@ class Files(unittest.TestCase):
     def test_facets_bound_the_tissues(self):
         for path in MESHES:
             with self.subTest(mesh=path.name):
-                run(ANATOMESH, "convert", path, path.with_suffix(".xdmf"))
+                convert(path, path.with_suffix(".xdmf"))
                 facets = meshio.read(path.with_name(path.stem + "_facets.xdmf"))
                 triangles, data = facets.cells[0].data, {n: v[0] for n, v in facets.cell_data.items()}
                 pairs = {(number, inside, outside) for number, inside, outside in
                          zip(data["interface"], data["label"], data["label_outside"])}
                 self.assertEqual(sorted(number for number, _, _ in pairs), list(range(1, len(pairs) + 1)))
                 self.assertEqual({value for value, _ in facets.field_data.values()}, {n for n, _, _ in pairs})
-                for label, volume in volumes_mm3(ANATOMESH, path).items():
+                for label, volume in checked_volumes_mm3(path).items():
                     around = np.concatenate([triangles[data["label"] == label],
                                              triangles[data["label_outside"] == label][:, ::-1]])
                     self.assertTrue(is_closed(around))
@@ -98,32 +96,32 @@ class Files(unittest.TestCase):
                 with self.subTest(mesh=path.name, data_format=data_format):
                     theirs, back = path.with_name("theirs.xdmf"), path.with_name("back.vtk")
                     meshio.xdmf.write(theirs, expected, data_format=data_format)
-                    run(ANATOMESH, "convert", theirs, back)
+                    convert(theirs, back)
                     self.assert_same(meshio.read(back), expected)
 
     def test_names(self):
         path = next(iter(MESHES))
         named = path.with_name("named.xdmf")
-        run(ANATOMESH, "convert", path, named)
+        convert(path, named)
         text = named.read_text(encoding="utf-8")
         self.assertNotIn("Information", text)      # there are no names
         information = '<Information Name="labels" Value=""><![CDATA[<main><map key="The &amp; inner" dim="3" ' \
                       'colour="#0a00ff">2</map><map key="Outer" dim="3">7</map></main>]]></Information></Grid>'
         named.write_text(text.replace("</Grid>", information), encoding="utf-8")
         again = path.with_name("again.xdmf")
-        run(ANATOMESH, "convert", named, again)
+        convert(named, again)
         self.assertEqual({name: list(value) for name, value in meshio.read(again).field_data.items()},
                          {"The & inner": [2, 3], "Outer": [7, 3]})
         with h5py.File(again.with_suffix(".h5")) as file:
             self.assertEqual(list(file["labels/names"].asstr()), ["The & inner", "Outer"])
             self.assertEqual(list(file["labels/values"]), [2, 7])
-        run(ANATOMESH, "convert", named, path.with_name("named.stl"), "--per-tissue")
+        convert(named, path.with_name("named.stl"), "--per-tissue")
         self.assertTrue(path.with_name("named_The___inner.stl").exists())
 
     def test_stl_of_each_tissue_is_closed_and_has_its_volume(self):
         for path in MESHES:
-            run(ANATOMESH, "convert", path, path.with_suffix(".stl"), "--per-tissue")
-            for label, volume in volumes_mm3(ANATOMESH, path).items():
+            convert(path, path.with_suffix(".stl"), "--per-tissue")
+            for label, volume in checked_volumes_mm3(path).items():
                 with self.subTest(mesh=path.name, label=label):
                     corners = read_stl(path.with_name(f"{path.stem}_label_{label}.stl"))
                     self.assertTrue(is_closed(ids_of(corners)))
@@ -133,7 +131,7 @@ class Files(unittest.TestCase):
         for path in MESHES:
             with self.subTest(mesh=path.name):
                 for extension in (".stl", ".ply", ".obj"):
-                    run(ANATOMESH, "convert", path, path.with_suffix(extension))
+                    convert(path, path.with_suffix(extension))
                 points, faces = read_ply(path.with_suffix(".ply"))
                 self.assertEqual(len(np.unique(faces["corners"])), len(points))
                 facets, obj = meshio.read(self.facets_of(path)), meshio.read(path.with_suffix(".obj"))
@@ -148,7 +146,7 @@ class Files(unittest.TestCase):
         for path in MESHES:
             facets = meshio.read(self.facets_of(path))
             for extension in (".vtp", ".ply"):
-                run(ANATOMESH, "convert", path, path.with_suffix(extension))
+                convert(path, path.with_suffix(extension))
                 data = read_with_vtk(path.with_suffix(extension))
                 if data is None:
                     self.skipTest("VTK's Python is not installed")
@@ -163,12 +161,11 @@ class Files(unittest.TestCase):
 
     @staticmethod
     def facets_of(path):
-        run(ANATOMESH, "convert", path, path.with_suffix(".xdmf"))
+        convert(path, path.with_suffix(".xdmf"))
         return path.with_name(path.stem + "_facets.xdmf")
 
 
 if __name__ == "__main__":
-    ANATOMESH = sys.argv[1]
     with tempfile.TemporaryDirectory() as place:
-        MESHES = {path: meshio.read(path) for path in meshes(ANATOMESH, pathlib.Path(place))}
-        unittest.main(argv=sys.argv[:1])
+        MESHES = {path: meshio.read(path) for path in meshes(pathlib.Path(place), nested_balls()).values()}
+        run_tests()
