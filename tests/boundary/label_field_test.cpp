@@ -7,6 +7,7 @@
 #include <random>
 
 #include "base/vec.h"
+#include "boundary/finite_differences.h"
 #include "support/test_images.h"
 
 namespace anatomesh {
@@ -93,20 +94,8 @@ TEST(LabelField, GradientsAreThoseOfFiniteDifferences) {
   const TissueImage image = make_tissue_image(testing::anisotropic(testing::noise(5)));
   const LabelField field(image);
   const std::vector<TissueId> tissues = all_tissues(image);
-  std::vector<double> values(tissues.size()), ahead(tissues.size()), behind(tissues.size());
-  std::vector<Vec3> gradients(tissues.size()), unused(tissues.size());
-  constexpr double kStep = 1e-5;
-  for (const Vec3 p : points_around(image, 200)) {
-    field.evaluate(p, tissues, values, gradients);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      Vec3 step;
-      step[axis] = kStep;
-      field.evaluate(p + step, tissues, ahead, unused);
-      field.evaluate(p - step, tissues, behind, unused);
-      for (std::size_t t = 0; t < tissues.size(); ++t)
-        EXPECT_NEAR(gradients[t][axis], (ahead[t] - behind[t]) / (2 * kStep), 1e-8);
-    }
-  }
+  for (const Vec3 p : points_around(image, 200))
+    testing::expect_gradients_of_finite_differences(field, tissues, p, 1e-8);
 }
 
 TEST(LabelField, LabelIsTheTissueWithTheLargestValue) {

@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "base/vec.h"
+#include "boundary/finite_differences.h"
 #include "boundary/label_field.h"
 #include "boundary/voxel_weights.h"
 #include "support/test_images.h"
@@ -40,20 +41,8 @@ TEST(SurfaceField, GradientsAreThoseOfFiniteDifferences) {
   const TissueImage image = make_tissue_image(testing::anisotropic(testing::noise(5)));
   const SurfaceField field(image);
   const std::array<TissueId, 4> tissues = {0, 1, 2, 3};
-  std::array<double, 4> values, ahead, behind;
-  std::array<Vec3, 4> gradients, unused;
-  constexpr double kStep = 1e-5;
   for (double x = -2; x < 8; x += 0.37) {
-    const Vec3 p = {x, 3.1 + 0.5 * x, 4.3 - 0.7 * x};
-    field.evaluate(p, tissues, values, gradients);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      Vec3 step;
-      step[axis] = kStep;
-      field.evaluate(p + step, tissues, ahead, unused);
-      field.evaluate(p - step, tissues, behind, unused);
-      for (std::size_t t = 0; t < tissues.size(); ++t)
-        EXPECT_NEAR(gradients[t][axis], (ahead[t] - behind[t]) / (2 * kStep), 1e-7);
-    }
+    testing::expect_gradients_of_finite_differences(field, tissues, {x, 3.1 + 0.5 * x, 4.3 - 0.7 * x}, 1e-7);
   }
 }
 

@@ -17,6 +17,7 @@
 #include "deform/lattice_of.h"
 #include "deform/sizes.h"
 #include "deform/slide_vertices.h"
+#include "mesh/expect_sound.h"
 #include "mesh/tissue_topology.h"
 #include "support/test_images.h"
 
@@ -26,18 +27,11 @@ namespace {
 const ShapeBounds kBounds = ShapeBounds::from_degrees(20, 150, 0.3);
 
 void expect_sound(const TissueMesh& mesh) {
-  EXPECT_EQ(testing::crowded_faces(mesh.points_mm, mesh.tets), 0u);
-  EXPECT_EQ(testing::vertices_in_edge_middles(mesh.points_mm, mesh.tets), 0u);
-  EXPECT_EQ(testing::duplicate_vertices(mesh.points_mm), 0u);
-  EXPECT_EQ(testing::unused_vertices(mesh.points_mm.size(), mesh.tets), 0u);
-  EXPECT_GT(testing::smallest_volume(mesh.points_mm, mesh.tets), 0);
+  testing::expect_sound(mesh.points_mm, mesh.tets);
   EXPECT_TRUE(std::is_sorted(mesh.tissues.begin(), mesh.tissues.end(), [](TissueId a, TissueId b) {
     return a != 0 && b == 0;
   })) << "the cushion is last";
-  const auto worst = testing::worst_tissue_shape(mesh);
-  EXPECT_GE(worst.min_dihedral_deg, 20);
-  EXPECT_LE(worst.max_dihedral_deg, 150);
-  EXPECT_GE(worst.mean_ratio, 0.3);
+  testing::expect_within(testing::worst_tissue_shape(mesh), 20, 150, 0.3);
 }
 
 /// Lines at which a surface is not manifold may shrink, but there are no new ones.

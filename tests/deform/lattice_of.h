@@ -1,7 +1,8 @@
 // Labelled lattices of test images, as the deformation finds them.
 #pragma once
 
-#include "lattice/label_lattice.h"
+#include "base/stage.h"
+#include "lattice/built_lattice.h"
 #include "mesh/adjacency.h"
 #include "mesh/mesh_checks.h"
 
@@ -15,10 +16,8 @@ inline Stage quiet_stage() {
 
 /// The lattice of an image (8 voxels, fidelity 0.95), with its cushion.
 inline TissueMesh lattice_of(const TissueImage& image) {
-  LatticePlan plan;
-  plan.bcc_size_mm = 8 * (image.spacing_mm.x + image.spacing_mm.y + image.spacing_mm.z) / 3;
-  plan.fidelity.assign(image.labels.size(), 0.95);
-  return LabelLattice(image, plan).build(quiet_stage()).mesh;
+  const double bcc_size_mm = 8 * (image.spacing_mm.x + image.spacing_mm.y + image.spacing_mm.z) / 3;
+  return build(image, plan_for(image, bcc_size_mm, 0.95)).mesh;
 }
 
 /// The worst shape of the tissues' tetrahedra alone.

@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "base/vec.h"
 #include "deform/lattice_of.h"
+#include "mesh/expect_sound.h"
 #include "support/test_images.h"
 
 namespace anatomesh {
@@ -55,15 +56,8 @@ TEST(SplitBridges, MeshStaysSoundAndWellShaped) {
   for (const auto& [name, image] : testing::all_shapes()) {
     SCOPED_TRACE(name);
     const TissueMesh mesh = split_mesh(image);
-    EXPECT_EQ(testing::crowded_faces(mesh.points_mm, mesh.tets), 0u);
-    EXPECT_EQ(testing::vertices_in_edge_middles(mesh.points_mm, mesh.tets), 0u);
-    EXPECT_EQ(testing::duplicate_vertices(mesh.points_mm), 0u);
-    EXPECT_EQ(testing::unused_vertices(mesh.points_mm.size(), mesh.tets), 0u);
-    EXPECT_GT(testing::smallest_volume(mesh.points_mm, mesh.tets), 0);
-    const auto worst = testing::worst_shape(mesh.points_mm, mesh.tets);
-    EXPECT_GE(worst.min_dihedral_deg, 25);
-    EXPECT_LE(worst.max_dihedral_deg, 135);
-    EXPECT_GE(worst.mean_ratio, 0.4);
+    testing::expect_sound(mesh.points_mm, mesh.tets);
+    testing::expect_within(testing::worst_shape(mesh.points_mm, mesh.tets), 25, 135, 0.4);
   }
 }
 

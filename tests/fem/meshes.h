@@ -12,6 +12,7 @@
 #include "base/vec.h"
 #include "fem/block_matrix.h"
 #include "fem/elasticity.h"
+#include "mesh/cube_mesh.h"
 
 namespace anatomesh::testing {
 
@@ -49,35 +50,16 @@ struct ElasticMesh {
 /// a fifth of an edge and tissues drawn at random.
 inline ElasticMesh jittered_box(int n, unsigned seed) {
   RandomReals random(seed);
+  const TissueMesh cubes = cube_mesh({n, n, n}, [](int, int, int) { return 0; });
   ElasticMesh mesh;
-  const auto vertex = [&](std::array<int, 3> at) {
-    return static_cast<VertexId>(at[0] + (n + 1) * (at[1] + (n + 1) * at[2]));
-  };
-  for (int k = 0; k <= n; ++k) {
-    for (int j = 0; j <= n; ++j) {
-      for (int i = 0; i <= n; ++i) {
-        mesh.points_mm.push_back(Vec3{2.0 * i, 2.0 * j, 2.0 * k} + 0.2 * random.next_vec());
-        const auto outer = [n](int index) { return index == 0 || index == n; };
-        mesh.on_boundary.push_back(outer(i) || outer(j) || outer(k) ? 1 : 0);
-      }
-    }
+  mesh.tets = cubes.tets;
+  for (const Vec3 p : cubes.points_mm) {
+    mesh.points_mm.push_back(2.0 * p + 0.2 * random.next_vec());
+    const auto [low, high] = std::minmax({p.x, p.y, p.z});
+    mesh.on_boundary.push_back(low == 0 || high == n ? 1 : 0);
   }
-  for (int cube = 0; cube < n * n * n; ++cube) {
-    std::array<std::size_t, 3> axes = {0, 1, 2};
-    do {  // one tetrahedron for each way to walk from corner (0, 0, 0) to (1, 1, 1)
-      std::array<int, 3> at = {cube % n, cube / n % n, cube / n / n};
-      std::array<VertexId, 4> tet;
-      tet[0] = vertex(at);
-      for (std::size_t step = 0; step < 3; ++step) {
-        ++at[axes[step]];
-        tet[step + 1] = vertex(at);
-      }
-      const auto& p = mesh.points_mm;
-      if (tet_shape({p[tet[0]], p[tet[1]], p[tet[2]], p[tet[3]]}).volume < 0) std::swap(tet[2], tet[3]);
-      mesh.tets.push_back(tet);
-      mesh.tissues.push_back(static_cast<std::uint16_t>((random.next() + 1) * 2));
-    } while (std::next_permutation(axes.begin(), axes.end()));
-  }
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    mesh.tissues.push_back(static_cast<std::uint16_t>((random.next() + 1) * 2));
   return mesh;
 }
 

@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "base/vec.h"
 #include "lattice/built_lattice.h"
+#include "mesh/expect_sound.h"
 #include "mesh/mesh_checks.h"
 #include "support/test_images.h"
 
@@ -164,15 +165,9 @@ TEST(LabelLattice, IsSoundAndOfGoodShape) {
   for_each_lattice([](const TissueImage&, const LatticePlan&, const LabelledLattice& lattice) {
     const TissueMesh& mesh = lattice.mesh;
     ASSERT_EQ(mesh.tets.size(), mesh.tissues.size());
-    EXPECT_EQ(testing::crowded_faces(mesh.points_mm, mesh.tets), 0u);
-    EXPECT_EQ(testing::vertices_in_edge_middles(mesh.points_mm, mesh.tets), 0u);
-    EXPECT_EQ(testing::duplicate_vertices(mesh.points_mm), 0u);
-    EXPECT_EQ(testing::unused_vertices(mesh.points_mm.size(), mesh.tets), 0u);
-    EXPECT_GT(testing::smallest_volume(mesh.points_mm, mesh.tets), 0);
+    testing::expect_sound(mesh.points_mm, mesh.tets);
     const auto worst = testing::worst_shape(mesh.points_mm, mesh.tets);
-    EXPECT_GE(worst.min_dihedral_deg, 30 - 1e-6);
-    EXPECT_LE(worst.max_dihedral_deg, 116.57 + 1e-6);
-    EXPECT_GE(worst.mean_ratio, 0.58);
+    testing::expect_within(worst, 30 - 1e-6, 116.57 + 1e-6, 0.58);
   });
 }
 

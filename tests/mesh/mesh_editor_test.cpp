@@ -7,6 +7,7 @@
 #include "base/vec.h"
 #include "mesh/cube_mesh.h"
 #include "mesh/edge_ring.h"
+#include "mesh/expect_sound.h"
 #include "mesh/mesh_checks.h"
 #include "mesh/tissue_topology.h"
 #include "mesh/vertex_star.h"
@@ -26,12 +27,7 @@ TissueMesh two_boxes() {
 
 VertexId vertex(int x, int y, int z) { return testing::cube_mesh_vertex(kCubes, x, y, z); }
 
-void expect_sound(const TissueMesh& mesh) {
-  EXPECT_EQ(testing::crowded_faces(mesh.points_mm, mesh.tets), 0u);
-  EXPECT_EQ(testing::vertices_in_edge_middles(mesh.points_mm, mesh.tets), 0u);
-  EXPECT_EQ(testing::unused_vertices(mesh.points_mm.size(), mesh.tets), 0u);
-  EXPECT_GT(testing::smallest_volume(mesh.points_mm, mesh.tets), 0);
-}
+void expect_sound(const TissueMesh& mesh) { testing::expect_sound(mesh.points_mm, mesh.tets); }
 
 /// The lists of tetrahedra at the vertices, and what is known of the vertices, are those of the mesh.
 void expect_consistent(const MeshEditor& editor) {

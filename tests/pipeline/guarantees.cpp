@@ -8,6 +8,7 @@
 
 #include "anatomesh/assess.h"
 #include "base/vec.h"
+#include "mesh/expect_sound.h"
 #include "mesh/mesh_checks.h"
 
 namespace anatomesh::testing {
@@ -117,10 +118,9 @@ void expect_bounded(const Result& result) {
   constexpr double kRoundingDeg = 1e-9;
   const DeformOptions& bounds = result.options.deform;
   const bool lattice = bounds.iterations == 0;
-  const Shape worst = worst_shape(result.mesh.points_mm, result.mesh.tets);
-  EXPECT_GE(worst.min_dihedral_deg, (lattice ? 30 : bounds.min_dihedral_deg) - kRoundingDeg);
-  EXPECT_LE(worst.max_dihedral_deg, (lattice ? 116.57 : bounds.max_dihedral_deg) + kRoundingDeg);
-  EXPECT_GE(worst.mean_ratio, lattice ? 0.58 : bounds.min_mean_ratio);
+  expect_within(worst_shape(result.mesh.points_mm, result.mesh.tets),
+                (lattice ? 30 : bounds.min_dihedral_deg) - kRoundingDeg,
+                (lattice ? 116.57 : bounds.max_dihedral_deg) + kRoundingDeg, lattice ? 0.58 : bounds.min_mean_ratio);
 }
 
 void expect_complete(const LabelImage& image, const Result& result) {
