@@ -6,30 +6,26 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <exception>
 #include <new>
 #include <utility>
 
 #include "anatomesh/errors.h"
 #include "io/cell_arrays.h"
-#include "io/hdf5_layout.h"
 #include "io/number_text.h"
 #include "io/output_file.h"
+#include "io/reader_process.h"
 
 namespace anatomesh {
 namespace {
 
-/// While it lives, the library does not print errors of its own. After an error it stays muted: the damaged file may
-/// remain open in it, about which it would complain at the end of the process.
+/// While it lives, the library does not print errors of its own.
 class MutedHdf5 {
  public:
   MutedHdf5() {
     H5Eget_auto2(H5E_DEFAULT, &print_, &with_);
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   }
-  ~MutedHdf5() {
-    if (std::uncaught_exceptions() == 0) H5Eset_auto2(H5E_DEFAULT, print_, with_);
-  }
+  ~MutedHdf5() { H5Eset_auto2(H5E_DEFAULT, print_, with_); }
   MutedHdf5(const MutedHdf5&) = delete;
   MutedHdf5& operator=(const MutedHdf5&) = delete;
 
@@ -175,12 +171,6 @@ namespace {
 
 constexpr std::uint64_t kMostInflation = 1100;  // of deflate, which ends at 1032
 
-hid_t open_dataset(const std::filesystem::path& path, hid_t file, hid_t access, const std::string& dataset) {
-  H5O_info_t info;
-  if (H5Oget_info_by_name2(file, dataset.c_str(), &info, H5O_INFO_BASIC, access) < 0) return H5I_INVALID_HID;
-  return has_empty_chunks(path, info.addr) ? H5I_INVALID_HID : H5Dopen2(file, dataset.c_str(), access);
-}
-
 /// A dataset of a file, looked at before it is read.
 struct OpenedDataset {
   const std::filesystem::path& path;
@@ -193,7 +183,7 @@ struct OpenedDataset {
   OpenedDataset(const std::filesystem::path& in, hid_t file, hid_t access, const std::string& dataset)
       : path(in),
         name(dataset),
-        set(open_dataset(in, file, access, dataset), &H5Dclose),
+        set(H5Dopen2(file, dataset.c_str(), access), &H5Dclose),
         type(H5Dget_type(set), &H5Tclose),
         space(H5Dget_space(set), &H5Sclose),
         creation(H5Dget_create_plist(set), &H5Pclose) {
@@ -246,31 +236,8 @@ hid_t dataset_access() {
 hid_t native_type(double) { return H5T_NATIVE_DOUBLE; }
 hid_t native_type(std::int64_t) { return H5T_NATIVE_INT64; }
 
-}  // namespace
-
-struct Hdf5File::Handles {
-  explicit Handles(const std::filesystem::path& path)
-      : file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), &H5Fclose) {}
-
-  MutedHdf5 muted;
-  Handle access{dataset_access(), &H5Pclose};
-  Handle file;
-};
-
-Hdf5File::Hdf5File(const std::filesystem::path& path) : path_(path) {
-  require_readable(path);
-  handles_ = std::make_unique<Handles>(path);
-  if (!handles_->file.is_open()) throw_damaged(path, "it is no HDF5 file");
-}
-Hdf5File::~Hdf5File() = default;
-
-bool Hdf5File::holds_reals(const std::string& dataset) const {
-  return OpenedDataset(path_, handles_->file, handles_->access, dataset).type_class() == H5T_FLOAT;
-}
-
 template <typename Value>
-std::vector<Value> Hdf5File::numbers(const std::string& dataset, std::uint64_t count) const {
-  const OpenedDataset opened(path_, handles_->file, handles_->access, dataset);
+std::vector<Value> numbers_of(const OpenedDataset& opened, std::uint64_t count) {
   const H5T_class_t kind = opened.type_class();
   const bool is_real = kind == H5T_FLOAT;
   if ((!is_real && kind != H5T_INTEGER) || H5Tget_size(opened.type) > 8) opened.fail("holds no numbers");
@@ -283,12 +250,58 @@ std::vector<Value> Hdf5File::numbers(const std::string& dataset, std::uint64_t c
   return values;
 }
 
+/// What may be asked of a dataset.
+enum class Question : std::uint32_t { holds_reals, reals, integers };
+
+void answer(Question question, const OpenedDataset& opened, std::uint64_t count, ProcessChannel& parent) {
+  switch (question) {
+    case Question::holds_reals:
+      return parent.put_one<char>(opened.type_class() == H5T_FLOAT);
+    case Question::reals:
+      return parent.put(numbers_of<double>(opened, count));
+    case Question::integers:
+      return parent.put(numbers_of<std::int64_t>(opened, count));
+  }
+}
+
+/// Until the channel throws.
+void answer_all(const std::filesystem::path& path, ProcessChannel& parent) {
+  const Handle access(dataset_access(), &H5Pclose);
+  const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), &H5Fclose);
+  if (!file.is_open()) throw_damaged(path, "it is no HDF5 file");
+  for (;;) {
+    const auto question = parent.get_one<Question>();
+    const auto count = parent.get_one<std::uint64_t>();
+    const std::string dataset = parent.get_text();
+    answer(question, OpenedDataset(path, file, access, dataset), count, parent);
+  }
+}
+
+ProcessChannel& ask(ReaderProcess& process, Question question, const std::string& dataset, std::uint64_t count) {
+  process.child().put_one(question);
+  process.child().put_one(count);
+  process.child().put(dataset);
+  return process.child();
+}
+
+}  // namespace
+
+Hdf5File::Hdf5File(const std::filesystem::path& path) {
+  require_readable(path);
+  process_ = std::make_unique<ReaderProcess>(path, [&](ProcessChannel& parent) { answer_all(path, parent); });
+}
+Hdf5File::~Hdf5File() = default;
+
+bool Hdf5File::holds_reals(const std::string& dataset) const {
+  return ask(*process_, Question::holds_reals, dataset, 0).get_one<char>() != 0;
+}
+
 std::vector<double> Hdf5File::reals(const std::string& dataset, std::uint64_t count) const {
-  return numbers<double>(dataset, count);
+  return ask(*process_, Question::reals, dataset, count).get_list<double>(count);
 }
 
 std::vector<std::int64_t> Hdf5File::integers(const std::string& dataset, std::uint64_t count) const {
-  return numbers<std::int64_t>(dataset, count);
+  return ask(*process_, Question::integers, dataset, count).get_list<std::int64_t>(count);
 }
 
 }  // namespace anatomesh

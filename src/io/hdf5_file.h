@@ -12,6 +12,8 @@
 
 namespace anatomesh {
 
+class ReaderProcess;
+
 /// A file on its way, in memory. The same calls give the same bytes.
 class Hdf5Image {
  public:
@@ -33,8 +35,9 @@ class Hdf5Image {
   std::unique_ptr<Handles> handles_;
 };
 
-/// A file to read from. All of it throws IoError where the file is damaged or lacks the dataset, also where it claims
-/// more numbers than its bytes can hold, before memory is reserved for them. Data in further files are not followed.
+/// A file to read from, in a process of its own (reader_process.h), since the library crashes on some damaged files.
+/// All of it throws IoError where the file is damaged or lacks the dataset, also where it claims more numbers than its
+/// bytes can hold, before memory is reserved for them. Data in further files are not followed.
 class Hdf5File {
  public:
   explicit Hdf5File(const std::filesystem::path& path);
@@ -50,12 +53,7 @@ class Hdf5File {
   std::vector<std::int64_t> integers(const std::string& dataset, std::uint64_t count) const;
 
  private:
-  struct Handles;
-  template <typename Value>
-  std::vector<Value> numbers(const std::string& dataset, std::uint64_t count) const;
-
-  std::filesystem::path path_;
-  std::unique_ptr<Handles> handles_;
+  std::unique_ptr<ReaderProcess> process_;
 };
 
 }  // namespace anatomesh
