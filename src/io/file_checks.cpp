@@ -173,13 +173,14 @@ struct FileKind {
   std::string_view extension;
   void (*check)(const fs::path& path);
   bool library_prints;
+  bool library_crashes;
 };
 
-constexpr std::array<FileKind, 5> kFileKinds = {{{".nrrd", &check_nrrd, false},
-                                                 {".nhdr", &check_nrrd, false},
-                                                 {".mha", &check_meta_image, true},
-                                                 {".mhd", &check_meta_image, true},
-                                                 {".mnc", &check_minc, true}}};
+constexpr std::array<FileKind, 5> kFileKinds = {{{".nrrd", &check_nrrd, false, false},
+                                                 {".nhdr", &check_nrrd, false, false},
+                                                 {".mha", &check_meta_image, true, false},
+                                                 {".mhd", &check_meta_image, true, false},
+                                                 {".mnc", &check_minc, true, true}}};
 
 const FileKind* kind_of(const fs::path& path) {
   const std::string extension = file_extension(path);
@@ -203,6 +204,11 @@ void check_before_itk(const fs::path& path) {
 bool is_read_by_printing_library(const fs::path& path) {
   const FileKind* const kind = kind_of(path);
   return kind != nullptr && kind->library_prints;
+}
+
+bool is_read_by_crashing_library(const fs::path& path) {
+  const FileKind* const kind = kind_of(path);
+  return kind == nullptr || kind->library_crashes;
 }
 
 void check_dicom_pixels(const fs::path& path, std::size_t least_bytes) {

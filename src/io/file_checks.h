@@ -14,6 +14,10 @@ void check_before_itk(const std::filesystem::path& path);
 /// Whether the library that ITK reads this file with prints on its own.
 bool is_read_by_printing_library(const std::filesystem::path& path);
 
+/// Whether that library crashes on some damaged files: libminc by HDF5, and GDCM, to which come folders and all files
+/// that no other knows.
+bool is_read_by_crashing_library(const std::filesystem::path& path);
+
 /// Throws IoError where the uncompressed pixel data of a DICOM file, of at least so many bytes, are cut off:
 /// GDCM takes what is missing for zeros.
 void check_dicom_pixels(const std::filesystem::path& path, std::size_t least_bytes);

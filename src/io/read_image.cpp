@@ -25,6 +25,7 @@
 #include "io/nifti_header.h"
 #include "io/nifti_image.h"
 #include "io/output_file.h"
+#include "io/reader_process.h"
 #include "io/slicer_segments.h"
 #include "io/voxel_type.h"
 
@@ -284,7 +285,6 @@ std::map<std::string, std::vector<Slice>> slices_by_series(const fs::path& folde
     const fs::path& file = entry.path();
     if (!entry.is_regular_file() || file.filename() == "DICOMDIR" || !has_dicom_preamble(file)) continue;
     Slice slice{file.string(), itk::GDCMImageIO::New().GetPointer(), {}};
-    const MutedStderr muted;  // GDCM prints what it thinks of broken files
     read_header(file, *slice.io);
     refuse_segmentation_object(file, *slice.io);
     slice.geometry = geometry_of(*slice.io);
@@ -365,6 +365,40 @@ ImageFile read_dicom_series(const fs::path& folder) {
   return file;
 }
 
+/// An image without its voxels and names.
+struct Frame {
+  std::array<std::size_t, 3> size;
+  ImageGeometry geometry;
+  std::size_t notes;
+};
+
+void send(const ImageFile& file, ProcessChannel& parent) {
+  const LabelImage& image = file.image;
+  parent.put_one(Frame{image.size, {image.spacing_mm, image.origin_mm, image.direction}, file.notes.size()});
+  for (const std::string& note : file.notes) parent.put(note);
+  parent.put(image.voxels);
+}
+
+ImageFile receive(ProcessChannel& child) {
+  const auto frame = child.get_one<Frame>();
+  const auto& [spacing_mm, origin_mm, direction] = frame.geometry;
+  ImageFile file;
+  for (std::size_t n = 0; n < frame.notes; ++n) file.notes.push_back(child.get_text());
+  const std::size_t voxels = frame.size[0] * frame.size[1] * frame.size[2];
+  file.image = {frame.size, spacing_mm, origin_mm, direction, child.get_list<Label>(voxels)};
+  return file;
+}
+
+ImageFile read_through_itk(const fs::path& path, const ItkSession& itk_session) {
+  return fs::is_directory(path) ? read_dicom_series(path) : read_single_file(path, itk_session);
+}
+
+/// The same for files that have no names of labels.
+ImageFile read_in_another_process(const fs::path& path, const ItkSession& itk_session) {
+  const auto work = [&](ProcessChannel& parent) { send(read_through_itk(path, itk_session), parent); };
+  return receive(ReaderProcess(path, work).child());
+}
+
 }  // namespace
 
 ImageFile read_label_image(const fs::path& path) {
@@ -373,8 +407,8 @@ ImageFile read_label_image(const fs::path& path) {
   if (fs::is_regular_file(path) && is_nifti_file(path)) return read_nifti_image(path);
   if (fs::is_regular_file(path) && is_dicom_segmentation(path)) return read_dicom_segmentation(path);
   const ItkSession itk_session;
-  if (fs::is_directory(path)) return read_dicom_series(path);
-  return read_single_file(path, itk_session);
+  return is_read_by_crashing_library(path) ? read_in_another_process(path, itk_session)
+                                           : read_through_itk(path, itk_session);
 }
 
 }  // namespace anatomesh
