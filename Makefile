@@ -65,7 +65,7 @@ asan: packages
 fuzz: packages
 	cmake --preset asan
 	cmake --build --preset asan -j $(JOBS) --target fuzz_mesh_files
-	ASAN_OPTIONS=max_allocation_size_mb=2048 LSAN_OPTIONS=suppressions=tests/fuzz/leaks.txt \
+	ASAN_OPTIONS=max_allocation_size_mb=2048 \
 	  build/asan/bin/fuzz_mesh_files build/asan/damaged $(FUZZ_SECONDS)
 
 check-style: packages

@@ -131,13 +131,13 @@ rlim_t address_space() {
 }
 
 Limits limits_for(const fs::path& file) {
-  constexpr double kMib = 1 << 20, kGib = 1 << 30;
+  constexpr double kMib = 1 << 20, kGib = 1 << 30, kLeast = kGib / 4;
   constexpr double kMostInflation = 8 * 1032;  // that of deflate, of bytes that become 64-bit numbers
   const double bytes = static_cast<double>(bytes_of(file)), free = available_memory_gib() * kGib;
-  const double fair = kGib + kMostInflation * bytes;
-  const double most = free > 0 ? std::min(fair, std::max(free / 2, kGib)) : fair;
+  const double fair = kLeast + kMostInflation * bytes;
+  const double most = free > 0 ? std::min(fair, std::max(free / 2, kLeast)) : fair;
   const rlim_t now = address_space();
-  return {now == 0 ? RLIM_INFINITY : now + static_cast<rlim_t>(most), 10 + static_cast<rlim_t>(bytes / kMib)};
+  return {now == 0 ? RLIM_INFINITY : now + static_cast<rlim_t>(most), 3 + static_cast<rlim_t>(bytes / kMib)};
 }
 
 template <typename Resource>
@@ -190,6 +190,8 @@ ReaderProcess::ReaderProcess(const fs::path& file, const std::function<void(Proc
   const std::lock_guard turn(one_at_a_time);
   std::array<int, 2> ends{};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) throw_no_process(file);
+  constexpr int kBufferBytes = 1 << 20;  // lists are large
+  ::setsockopt(ends[1], SOL_SOCKET, SO_SNDBUF, &kBufferBytes, sizeof(kBufferBytes));
   channel_ = std::make_unique<ProcessChannel>(file, ends[0]);
   auto child_end = std::make_unique<ProcessChannel>(file, ends[1]);
   child_ = ::fork();

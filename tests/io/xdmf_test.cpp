@@ -1,9 +1,7 @@
-// XDMF of other tools, and damaged HDF5.
-#include <random>
+// XDMF of other tools.
 #include <string>
 #include <vector>
 
-#include "io/hdf5_file.h"
 #include "io/mesh_file_fixture.h"
 
 namespace anatomesh::testing {
@@ -146,41 +144,6 @@ TEST_F(Xdmf, MissingDataAreRefused) {
   EXPECT_SAYS(said(with("mesh.h5:/mesh/tetrahedra", "tetrahedra"), "mesh.xdmf"), "names no dataset");
   put("mesh.h5", "no HDF5");
   EXPECT_SAYS(said(text, "mesh.h5"), "it is no HDF5 file");
-}
-
-TEST_F(Xdmf, DamagedHdfNeverCrashes) {
-  written(two_tissues());
-  const std::string bytes = bytes_of(in_folder("mesh.h5"));
-  std::mt19937 random(3);
-  for (int trial = 0; trial < 1000; ++trial) {
-    put("mesh.h5", with_changed_bytes(bytes, 1 + trial % 5, random));
-    message_of_damaged(in_folder("mesh.xdmf"));
-  }
-}
-
-// libhdf5 1.10 divides by both.
-TEST_F(Xdmf, ChunksWithoutSizeAreRefused) {
-  written(two_tissues());
-  const std::string bytes = bytes_of(in_folder("mesh.h5"));
-  // A layout message of version 3: chunked, three dimensions; then an address and the dimensions.
-  const std::string head = {8, 0, 24, 0, 0, 0, 0, 0, 3, 2, 3};
-  const std::size_t at = bytes.find(head);
-  ASSERT_NE(at, std::string::npos);
-  for (const std::size_t damaged_at : {at + 10, at + 19}) {
-    std::string damaged = bytes;
-    damaged[damaged_at] = 0;
-    put("mesh.h5", damaged);
-    EXPECT_SAYS(message_of<IoError>("mesh.h5", [&] { read_mesh(in_folder("mesh.xdmf")); }), "cannot be opened");
-  }
-}
-
-TEST_F(Xdmf, CutHdfIsRefused) {
-  written(two_tissues());
-  const std::string bytes = bytes_of(in_folder("mesh.h5"));
-  for (std::size_t part = 1; part < 40; ++part) {
-    put("mesh.h5", bytes.substr(0, part * bytes.size() / 40));
-    message_of<IoError>(in_folder("mesh.h5"), [&] { read_mesh(in_folder("mesh.xdmf")); });
-  }
 }
 
 }  // namespace
