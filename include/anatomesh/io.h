@@ -2,8 +2,9 @@
 //
 // Every message of these functions is one sentence that names the file, the value at fault and what
 // would be right. None of them prints: what ITK and VTK have to say becomes a note or an error. Calls
-// into ITK and VTK take turns, since both report through one place a process. While a MINC or MetaImage
-// file is read, whose libraries print on their own, the process's standard error is muted.
+// into ITK and VTK take turns, since both report through one place a process. While a MetaImage file is
+// read, whose library prints on its own, the process's standard error is muted. HDF5, MINC and DICOM series
+// are read in a forked child, since their libraries crash on some damaged files.
 #pragma once
 
 #include <filesystem>
@@ -32,7 +33,8 @@ struct ImageFile {
 /// Segmentations of 3D Slicer (NRRD with its keys) and in DICOM come with names; where their segments overlap the later
 /// one wins, and a note says in how many voxels. DICOM slices must be evenly spaced. Analyze files and NIfTI files with
 /// neither form do not say where they lie: their axes are taken as LPS, their origin as 0. Memory: the labels, plus up
-/// to two copies of the voxels in the type of the file (none for NIfTI files of 32-bit voxels). Speed: that of zlib.
+/// to two copies of the voxels in the type of the file (none for NIfTI files of 32-bit voxels); DICOM series and MINC:
+/// the labels once more. Speed: that of zlib.
 /// Throws IoError (missing, unreadable, truncated) or InvalidInput (readable, but no such label image).
 ImageFile read_label_image(const std::filesystem::path& path);
 

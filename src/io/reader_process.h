@@ -79,10 +79,10 @@ class ProcessChannel {
 
 /// A child of this process that reads a file, or the files in a folder. It ends with this object.
 ///
-/// The child is made by fork(), which takes about 1 ms, and 5 ms more for each GiB that this process has in use. It has
+/// It is made by fork(), which takes about 1 ms, and some 30 ms more for each GiB that this process has in use. It has
 /// the thread that made it and no other, so that it must not wait for others: no oneTBB, no Python. What it prints is
-/// lost. Signals end it, but for SIGINT, which is meant for this process. It may take half of the memory that is free,
-/// or less for small files, and seconds by the size of what it reads.
+/// lost. Signals end it, but for SIGINT, which is meant for this process. Beside what this process has it may take
+/// memory by the size of what it reads, at most half of what is free, and so it is with seconds of computing.
 class ReaderProcess {
  public:
   /// The work sends what it reads, or answers questions until the channel throws. Throws IoError where no process can
