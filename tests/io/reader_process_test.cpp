@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <numeric>
+#include <thread>
 
 #include "anatomesh/errors.h"
 #include "io/io_fixture.h"
@@ -93,6 +94,22 @@ TEST_F(Reader, EndsWithItsObject) {
     const ReaderProcess waits(in_folder("scan.h5"), [](ProcessChannel&) { ::pause(); });
   }
   EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1);  // there is no child
+}
+
+TEST_F(Reader, ManyAtOnce) {
+  const auto read_often = [this] {
+    for (int n = 0; n < 50; ++n) {
+      const std::vector<int> numbers(1000, n);
+      ReaderProcess reader(in_folder("scan.h5"), [&](ProcessChannel& parent) {
+        parent.put(std::vector<int>(numbers));
+        throw IoError("'scan.h5' is cut");
+      });
+      EXPECT_EQ(reader.child().get_list<int>(numbers.size()), numbers);
+      EXPECT_THROW(reader.child().get_text(), IoError);
+    }
+  };
+  std::vector<std::jthread> threads;
+  for (int n = 0; n < 4; ++n) threads.emplace_back(read_often);
 }
 
 TEST_F(Reader, WorksWhereChildrenAreIgnored) {
