@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "anatomesh/errors.h"
+#include "io/label_comment.h"
 #include "io/label_values.h"
 #include "io/mesh_groups.h"
 #include "io/number_text.h"
@@ -27,10 +28,8 @@ constexpr std::string_view kLabelComment = "label ";
 // ---- writing
 
 void put_names(TextOutput& out, const TetMesh& mesh, const MeshGroups& groups) {
-  for (const auto& [label, name] : groups.tissues) {
-    const auto entry = mesh.names.find(label);
-    if (entry == mesh.names.end() || entry->second.name.empty()) continue;
-    out << "# " << kLabelComment << label << ' ' << name << '\n';
+  for (const LabelComment& tissue : label_comments(mesh, groups.tissues)) {
+    if (!tissue.name.empty()) out << "# " << kLabelComment << tissue.label << ' ' << tissue.name << '\n';
   }
   for (const SurfaceGroup& group : groups.surfaces) out << "# surface " << group.tag << ' ' << group.name << '\n';
 }

@@ -171,10 +171,11 @@ class Formats(unittest.TestCase):
                     np.testing.assert_array_equal(found.cell_data["label"][0], labels)
 
     def test_names_come_back(self):
-        for extension in (".msh", ".mesh"):
+        in_gmsh = {3: "White matter", 200: "Große _Vene_", 7: "x" * 120}
+        for extension, names in ((".msh", in_gmsh), (".mesh", NAMES)):
             copy = convert(convert(self.named, self.folder / f"copy{extension}"), self.folder / "copy.mesh")
             comments = [line for line in copy.read_text().splitlines() if line.startswith("# label")]
-            self.assertEqual(comments, ["# label 3 White matter", f"# label 7 {'x' * 120}", "# label 200 Große _Vene_"])
+            self.assertEqual(comments, [f"# label {label} {name}" for label, name in sorted(names.items())])
 
 
 if __name__ == "__main__":
