@@ -3,15 +3,15 @@
 
 usage: docs_commands_test.py ANATOMESH      exit status 77 (skipped) without numpy or nibabel
 
-Each page has an empty folder with the small images below, under the names that pages give to theirs; its blocks run there
-one after the other, the Python in one interpreter. Blocks are told by their language, or, without one, by a first word that
-is a program. A comment before a block says what else becomes of it:
+Each page has a folder with the small images that are made below, under the names that pages give to theirs; its blocks
+run there one after the other, the Python in one interpreter. Blocks are told by their language, or, without one, by a
+first word that is a program. A comment before a block says what else becomes of it:
 
     <!-- not run: WHY -->     it is listed and passed over
     <!-- file: NAME -->       it is put into a file, for later blocks
 
-Commands of programs that are not installed, and Python that needs such packages, are skipped and listed. PYTHONPATH names
-the folder with the Python package.
+Commands of programs that are not installed, and Python that needs such packages, are skipped and listed. PYTHONPATH
+names the folder with the Python package.
 """
 import contextlib
 import io
@@ -44,8 +44,8 @@ LANGUAGES = {"sh": "sh", "bash": "sh", "console": "sh", "python": "python", "cpp
 # Packages that a page may do without; the names of their modules.
 OPTIONAL_MODULES = {"SimpleITK", "anatomesh", "dolfin", "dolfinx", "meshio", "mpi4py", "nibabel", "pyvista"}
 
-BLOCK = re.compile(r"(?:^<!-- (?P<mark>not run|file): (?P<says>[^\n]*) -->\n)?^```(?P<language>[^`\n]*)\n(?P<text>.*?)^```$",
-                   re.DOTALL | re.MULTILINE)
+BLOCK = re.compile(r"(?:^<!-- (?P<mark>not run|file): (?P<says>[^\n]*) -->\n)?"
+                   r"^```(?P<language>[^`\n]*)\n(?P<text>.*?)^```$", re.DOTALL | re.MULTILINE)
 
 
 class Block(typing.NamedTuple):
@@ -81,7 +81,8 @@ def balls(inner, outer, further=()):
 
 
 def write_nrrd(path, voxels):
-    header = (f"NRRD0004\ntype: uint8\ndimension: 3\nspace: left-posterior-superior\nsizes: {'{} {} {}'.format(*voxels.shape)}\n"
+    sizes = " ".join(map(str, voxels.shape))
+    header = (f"NRRD0004\ntype: uint8\ndimension: 3\nspace: left-posterior-superior\nsizes: {sizes}\n"
               "space directions: (1,0,0) (0,1,0) (0,0,1)\nspace origin: (0,0,0)\nencoding: raw\n\n")
     path.write_bytes(header.encode() + voxels.tobytes(order="F"))
 
@@ -104,7 +105,8 @@ def make_inputs(folder):
     write_nifti(folder / "tumour.nii.gz", balls(0, 0, (1, 1)), 1.0)
     write_nrrd(folder / "head.nrrd", balls(3, 1, (10, 12)))
     write_nrrd(folder / "atlas.nrrd", balls(2, 4))
-    (folder / "SPL-BrainAtlas.ctbl").write_text("# Color table file\n2 left_kidney 185 102 83 255\n4 cortex 1 2 3 255\n")
+    (folder / "SPL-BrainAtlas.ctbl").write_text("# Color table file\n2 left_kidney 185 102 83 255\n"
+                                                "4 cortex 1 2 3 255\n")
     (folder / "names.csv").write_text("label,name\n2,left kidney\n4,cortex\n")
     write_mgz(folder / "aparc+aseg.mgz", balls(4, 2))
     (folder / "FreeSurferColorLUT.txt").write_text("2 Left-Cerebral-White-Matter 245 245 245 0\n"

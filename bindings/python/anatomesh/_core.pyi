@@ -15,6 +15,7 @@ class TetMesh:
         tets: npt.ArrayLike,
         labels: npt.ArrayLike,
         names: Mapping[int, str],
+        colours: Mapping[int, tuple[int, int, int]],
     ) -> None: ...
     @property
     def points(self) -> npt.NDArray[np.float64]: ...
@@ -24,6 +25,8 @@ class TetMesh:
     def labels(self) -> npt.NDArray[np.uint32]: ...
     @property
     def names(self) -> dict[int, str]: ...
+    @property
+    def colours(self) -> dict[int, tuple[int, int, int]]: ...
 
 class LabelImage:
     def __init__(
@@ -33,6 +36,7 @@ class LabelImage:
         origin: Sequence[float],
         direction: Sequence[Sequence[float]],
         names: Mapping[int, str],
+        colours: Mapping[int, tuple[int, int, int]],
     ) -> None: ...
     def keep_labels(self, labels: Sequence[int]) -> None: ...
 

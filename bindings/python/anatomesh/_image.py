@@ -14,6 +14,8 @@ from .errors import InvalidInput
 
 Triple = Union[Sequence[float], npt.NDArray[Any]]
 Matrix = Union[Sequence[Sequence[float]], npt.NDArray[Any]]
+#: Red, green and blue, whole numbers from 0 to 255.
+Colour = Sequence[int]
 Progress = Callable[[str, float], Optional[bool]]
 
 
@@ -93,9 +95,21 @@ def _is_rotation(geometry: Geometry) -> bool:
     return bool(np.abs(direction.T @ direction - np.eye(3)).max() <= 1e-4)
 
 
+def _says_where_it_lies(image: Any) -> bool:
+    """Not so: Analyze files, and NIfTI files with neither form, for which nibabel makes up an affine."""
+    header = image.header
+    if not isinstance(header, sys.modules["nibabel.analyze"].AnalyzeHeader):
+        return True
+    if any(int(header[code]) > 0 for code in ("qform_code", "sform_code") if code in header):
+        return True
+    return image.affine is not None and not np.allclose(image.affine, header.get_best_affine())
+
+
 def _of_nibabel(image: Any) -> tuple[npt.NDArray[Any], Geometry]:
     header = image.header
     mm = _UNITS_MM.get(header.get_xyzt_units()[0], 1.0) if hasattr(header, "get_xyzt_units") else 1.0
+    if not _says_where_it_lies(image):  # as the command line takes it: in LPS, from the origin on
+        return np.asanyarray(image.dataobj), Geometry(tuple(mm * float(zoom) for zoom in header.get_zooms()[:3]))
     affine = np.asarray(image.affine, dtype=np.float64)
     from_file = np.array_equal(affine, affine.astype(np.float32))
     zooms = [float(zoom) for zoom in header.get_zooms()[:3]] if from_file else None
@@ -146,6 +160,7 @@ def label_image(
     origin: Optional[Triple] = None,
     direction: Optional[Matrix] = None,
     affine: Optional[Matrix] = None,
+    colours: Optional[Mapping[int, Colour]] = None,
 ) -> _core.LabelImage:
     """An array [i, j, k] with its geometry, or an image object, which has its own, as the library takes it."""
     reader = _reader_of(image)
@@ -157,11 +172,24 @@ def label_image(
         raise InvalidInput(
             f"a {type(image).__name__} says itself where it lies; spacing, origin, direction and affine are for arrays"
         )
-    return _core.LabelImage(_native(voxels), *geometry, _plain_names(names))
+    return _core.LabelImage(_native(voxels), *geometry, plain_names(names), plain_colours(colours))
 
 
-def _plain_names(names: Optional[Mapping[int, str]]) -> dict[int, str]:
+def plain_names(names: Optional[Mapping[int, str]]) -> dict[int, str]:
     for label, name in (names or {}).items():
         if not isinstance(name, str):
             raise InvalidInput(f"the name of label {label!r} is {name!r}; it must be text")
     return dict(names or {})
+
+
+def plain_colours(colours: Optional[Mapping[int, Colour]]) -> dict[int, tuple[int, int, int]]:
+    plain = {}
+    for label, colour in (colours or {}).items():
+        parts = np.asarray(colour)
+        if parts.shape != (3,) or parts.dtype.kind not in "iu" or parts.min() < 0 or parts.max() > 255:
+            raise InvalidInput(
+                f"the colour of label {label!r} is {colour!r}; it must be red, green and blue, "
+                "whole numbers from 0 to 255"
+            )
+        plain[label] = (int(parts[0]), int(parts[1]), int(parts[2]))
+    return plain

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._image import Matrix, Progress, Triple, label_image
+from ._image import Colour, Matrix, Progress, Triple, label_image, plain_colours, plain_names
 from .errors import InvalidInput
 
 if TYPE_CHECKING:
@@ -66,11 +66,13 @@ class Mesh:
         tets: npt.ArrayLike,
         labels: Optional[npt.ArrayLike] = None,
         names: Optional[Mapping[int, str]] = None,
+        colours: Optional[Mapping[int, Colour]] = None,
     ) -> None:
         """A mesh of arrays, which are copied: (n, 3) points in mm, (m, 4) vertices, (m,) labels (all 1 without)."""
         tets = _whole_numbers("tets", tets)
         labels = np.ones(len(tets), np.uint32) if labels is None else _whole_numbers("labels", labels)
-        self._mesh = _core.TetMesh(np.asarray(points, np.float64), tets, labels, dict(names or {}))
+        table = plain_names(names), plain_colours(colours)
+        self._mesh = _core.TetMesh(np.asarray(points, np.float64), tets, labels, *table)
         self._describe({})
 
     @classmethod
@@ -105,6 +107,11 @@ class Mesh:
     def names(self) -> dict[int, str]:
         """What labels stand for, where that is known."""
         return self._mesh.names
+
+    @property
+    def colours(self) -> dict[int, tuple[int, int, int]]:
+        """Red, green and blue of labels, 0 to 255, where they are known."""
+        return self._mesh.colours
 
     def interfaces(self) -> list[Interface]:
         """The surfaces where two tissues meet and the outer skin, each face once, sorted by inside, then outside."""
@@ -157,7 +164,7 @@ class Mesh:
     def to_meshio(self) -> Any:
         """A meshio.Mesh with the cell data "label", whose write() knows many formats.
 
-        Names go into field_data, as Gmsh has them: {name: [label, 3]}.
+        Names go into field_data, as Gmsh has them: {name: [label, 3]}, which has no place for colours.
         """
         import meshio
 
@@ -169,19 +176,25 @@ class Mesh:
         )
 
     def to_pyvista(self) -> Any:
-        """A pyvista.UnstructuredGrid with the cell data "label"; names are in field_data, as in our .vtu files."""
+        """A pyvista.UnstructuredGrid with the cell data "label"; names and colours are in field_data.
+
+        As in our .vtu files, colours only where every label that has a name or a colour has one.
+        """
         import pyvista
         from vtkmodules.vtkCommonCore import vtkStringArray
 
         grid = pyvista.UnstructuredGrid({pyvista.CellType.TETRA: self.tets.astype(np.int64)}, np.array(self.points))
         grid.cell_data["label"] = np.array(self.labels)
-        if self.names:
-            grid.field_data["label_values"] = np.array(list(self.names), np.uint32)
+        described = sorted({*self.names, *self.colours})
+        if described:
+            grid.field_data["label_values"] = np.array(described, np.uint32)
             names = vtkStringArray()  # pyvista's own takes ASCII only
             names.SetName("label_names")
-            for name in self.names.values():
-                names.InsertNextValue(name)
+            for known in described:
+                names.InsertNextValue(self.names.get(known, ""))
             grid.GetFieldData().AddArray(names)
+        if described and set(described) == set(self.colours):
+            grid.field_data["label_colours"] = np.array([self.colours[known] for known in described], np.uint8)
         return grid
 
     @classmethod
@@ -189,7 +202,8 @@ class Mesh:
         """The linear tetrahedra of a meshio.Mesh, in its order and orientation.
 
         Labels come from the cell data of the name `label`; unless given, of the first of "label", "labels",
-        "medit:ref", "gmsh:physical" and "material" that is there; without any, all labels are 1.
+        "medit:ref", "gmsh:physical" and "material" that is there; without any, all labels are 1. Names come from
+        field_data, as Gmsh has them or, with colours, as our .vtu files do.
         """
         blocks = [n for n, block in enumerate(mesh.cells) if block.type == "tetra"]
         if not blocks:
@@ -201,7 +215,7 @@ class Mesh:
         if name not in mesh.cell_data:
             raise InvalidInput(f"the mesh has no cell data '{name}'; it has {sorted(mesh.cell_data)}")
         labels = np.concatenate([mesh.cell_data[name][n] for n in blocks])
-        return cls(mesh.points, tets, labels, _names_of_meshio(mesh))
+        return cls(mesh.points, tets, labels, *_table_of_meshio(mesh))
 
     def __reduce__(self) -> tuple[Any, ...]:
         described = {
@@ -210,7 +224,8 @@ class Mesh:
             "times": self.times,
             "options": self.options,
         }
-        return _remade, (np.array(self.points), np.array(self.tets), np.array(self.labels), self.names, described)
+        arrays = np.array(self.points), np.array(self.tets), np.array(self.labels)
+        return _remade, (*arrays, self.names, self.colours, described)
 
     def __repr__(self) -> str:
         return (
@@ -219,10 +234,18 @@ class Mesh:
         )
 
 
-def _names_of_meshio(mesh: Any) -> dict[int, str]:
-    """The names of volumes as Gmsh has them, of anything else in field_data nothing."""
-    entries = ((name, np.atleast_1d(entry)) for name, entry in mesh.field_data.items())
-    return {int(e[0]): name for name, e in entries if e.shape == (2,) and e.dtype.kind in "iu" and e[1] == 3}
+def _table_of_meshio(mesh: Any) -> tuple[dict[int, str], dict[int, tuple[int, int, int]]]:
+    """Names and colours of our .vtu files, or the names of volumes as Gmsh has them; of anything else nothing."""
+    fields = {name: np.atleast_1d(entry) for name, entry in mesh.field_data.items()}
+    if {"label_values", "label_names"} <= set(fields):
+        labels = [int(label) for label in fields["label_values"].ravel()]
+        texts = fields["label_names"].astype(np.uint8).tobytes().decode("utf-8", "replace").split("\0")
+        colours = fields.get("label_colours", np.zeros((0, 3)))
+        rows = colours.reshape(-1, 3) if colours.size == 3 * len(labels) else ()
+        names = {label: text for label, text in zip(labels, texts) if text}
+        return names, {label: (int(r), int(g), int(b)) for label, (r, g, b) in zip(labels, rows)}
+    groups = {name: e for name, e in fields.items() if e.shape == (2,) and e.dtype.kind in "iu" and e[1] == 3}
+    return {int(e[0]): name for name, e in groups.items()}, {}
 
 
 def _whole_numbers(name: str, given: npt.ArrayLike) -> npt.NDArray[np.uint32]:
@@ -235,8 +258,13 @@ def _whole_numbers(name: str, given: npt.ArrayLike) -> npt.NDArray[np.uint32]:
 
 
 def _remade(
-    points: npt.ArrayLike, tets: npt.ArrayLike, labels: npt.ArrayLike, names: dict[int, str], described: dict[str, Any]
+    points: npt.ArrayLike,
+    tets: npt.ArrayLike,
+    labels: npt.ArrayLike,
+    names: dict[int, str],
+    colours: dict[int, tuple[int, int, int]],
+    described: dict[str, Any],
 ) -> Mesh:
-    mesh = Mesh(points, tets, labels, names)
+    mesh = Mesh(points, tets, labels, names, colours)
     mesh._describe(described)
     return mesh

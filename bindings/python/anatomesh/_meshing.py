@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Mapping, Optional
 
 from . import _core
-from ._image import Matrix, Progress, Triple, label_image, require_image_object
+from ._image import Colour, Matrix, Progress, Triple, label_image, require_image_object
 from ._mesh import Mesh
 from ._options import checked_options
 
@@ -25,6 +25,7 @@ def mesh(
     direction: Optional[Matrix] = None,
     affine: Optional[Matrix] = None,
     names: Optional[Mapping[int, str]] = None,
+    colours: Optional[Mapping[int, Colour]] = None,
     progress: Optional[Progress] = None,
     **options: Unpack[Options],
 ) -> Mesh:
@@ -39,14 +40,15 @@ def mesh(
     SimpleITK or nibabel says so itself (see mesh_image()). The mesh is in LPS whatever the image was given in;
     frame="ras" puts it where nibabel's coordinates are.
 
-    `names` are the names of labels. `progress(stage, fraction)` is called now and then on the calling thread; once it
-    returns False, or raises, the work stops. Ctrl-C stops it, too. Other threads of Python go on meanwhile.
+    `names` are the names of labels, `colours` their red, green and blue, 0 to 255. `progress(stage, fraction)` is called
+    now and then on the calling thread; once it returns False, or raises, the work stops. Ctrl-C stops it, too. Other
+    threads of Python go on meanwhile.
 
     The options are those of `Options`. The same image and options give the same bytes as the command line.
 
     Raises InvalidInput, InvalidOption, MeshingFailed, Cancelled; TypeError for an option that does not exist.
     """
-    voxels = label_image(image, names, spacing, origin, direction, affine)
+    voxels = label_image(image, names, spacing, origin, direction, affine, colours)
     return Mesh._made(_core.image_to_mesh(voxels, checked_options("mesh", options), progress))
 
 
@@ -55,12 +57,13 @@ def mesh_image(
     /,
     *,
     names: Optional[Mapping[int, str]] = None,
+    colours: Optional[Mapping[int, Colour]] = None,
     progress: Optional[Progress] = None,
     **options: Unpack[Options],
 ) -> Mesh:
     """Meshes a SimpleITK.Image or an image of nibabel, which says itself where it lies; else as mesh()."""
     require_image_object(image)
-    return mesh(image, names=names, progress=progress, **options)
+    return mesh(image, names=names, colours=colours, progress=progress, **options)
 
 
 @dataclass(frozen=True)
@@ -90,12 +93,13 @@ class Remesher:
         direction: Optional[Matrix] = None,
         affine: Optional[Matrix] = None,
         names: Optional[Mapping[int, str]] = None,
+        colours: Optional[Mapping[int, Colour]] = None,
         progress: Optional[Progress] = None,
         **options: Unpack[Options],
     ) -> None:
         self._geometry = (spacing, origin, direction, affine)
-        self._names = names
-        voxels = label_image(image, names, *self._geometry)
+        self._names, self._colours = names, colours
+        voxels = label_image(image, names, *self._geometry, colours)
         self._remesher = _core.Remesher(voxels, checked_options("Remesher", options), progress)
         self._mesh: Optional[Mesh] = None
 
@@ -104,7 +108,8 @@ class Remesher:
 
         Raises what mesh() does; the mesh is then what it was before. Meshes handed out before stay as they are.
         """
-        report = self._remesher.update(label_image(changed, self._names, *self._geometry), progress)
+        voxels = label_image(changed, self._names, *self._geometry, self._colours)
+        report = self._remesher.update(voxels, progress)
         self._mesh = None
         return UpdateReport(**report)
 

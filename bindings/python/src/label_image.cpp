@@ -119,10 +119,11 @@ Vec3 vector_of(const std::array<double, 3>& numbers) { return {numbers[0], numbe
 
 LabelImage label_image_of(const py::array& array, const std::array<double, 3>& spacing_mm,
                           const std::array<double, 3>& origin_mm, const Mat3& direction,
-                          const std::map<Label, std::string>& names) {
+                          const std::map<Label, std::string>& names, const std::map<Label, Colour>& colours) {
   const Voxels voxels = voxels_of(array);
   const VoxelType& type = type_of(array);
-  LabelImage image = {voxels.size, vector_of(spacing_mm), vector_of(origin_mm), direction, {}, label_table_of(names)};
+  LabelImage image = {voxels.size, vector_of(spacing_mm),         vector_of(origin_mm), direction,
+                      {},          label_table_of(names, colours)};
   const py::gil_scoped_release unlocked;
   image.voxels.resize(image.size[0] * image.size[1] * image.size[2]);
   type.copy(voxels, image);
@@ -136,13 +137,14 @@ void keep_labels(LabelImage& image, const std::vector<Label>& kept) {
     if (!std::ranges::binary_search(sorted, label)) label = 0;
 }
 
-LabelTable label_table_of(const std::map<Label, std::string>& names) {
+LabelTable label_table_of(const std::map<Label, std::string>& names, const std::map<Label, Colour>& colours) {
   LabelTable table;
   for (const auto& [label, name] : names) {
     if (name.find_first_of("\r\n") != std::string::npos)
       throw InvalidInput("the name of label " + std::to_string(label) + " goes over several lines; it must be in one");
     table[label].name = name;
   }
+  for (const auto& [label, colour] : colours) table[label].colour = colour;
   return table;
 }
 
@@ -151,6 +153,13 @@ std::map<Label, std::string> names_in(const LabelTable& table) {
   for (const auto& [label, entry] : table)
     if (!entry.name.empty()) names[label] = entry.name;
   return names;
+}
+
+std::map<Label, Colour> colours_in(const LabelTable& table) {
+  std::map<Label, Colour> colours;
+  for (const auto& [label, entry] : table)
+    if (entry.colour) colours[label] = *entry.colour;
+  return colours;
 }
 
 }  // namespace anatomesh::python

@@ -87,7 +87,7 @@ class GuardedRemesher {
 
 void bind_meshing(py::module_& module) {
   py::class_<LabelImage>(module, "LabelImage")
-      .def(py::init(&label_image_of), "voxels"_a, "spacing"_a, "origin"_a, "direction"_a, "names"_a)
+      .def(py::init(&label_image_of), "voxels"_a, "spacing"_a, "origin"_a, "direction"_a, "names"_a, "colours"_a)
       .def("keep_labels", &keep_labels, "labels"_a, py::call_guard<py::gil_scoped_release>());
   module.def("image_to_mesh", &meshed, "image"_a, "options"_a, "progress"_a);
   module.def("default_options", [] { return dict_of(Options{}); });

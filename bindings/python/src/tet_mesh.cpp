@@ -71,12 +71,13 @@ void require_sound(const TetMesh& mesh) {
 }
 
 std::shared_ptr<TetMesh> mesh_of(const RowsOf<double>& points, const RowsOf<VertexId>& tets,
-                                 const RowsOf<Label>& labels, const std::map<Label, std::string>& names) {
+                                 const RowsOf<Label>& labels, const std::map<Label, std::string>& names,
+                                 const std::map<Label, Colour>& colours) {
   auto mesh = std::make_shared<TetMesh>();
   mesh->points_mm = rows_of<double, Vec3>(points, "points");
   mesh->tets = rows_of<VertexId, std::array<VertexId, 4>>(tets, "tets");
   mesh->labels = rows_of<Label, Label>(labels, "labels");
-  mesh->names = label_table_of(names);
+  mesh->names = label_table_of(names, colours);
   require_sound(*mesh);
   return mesh;
 }
@@ -117,11 +118,17 @@ py::array property(const py::object& self) {
 void bind_tet_mesh(py::module_& module) {
   using namespace py::literals;
   py::class_<TetMesh, std::shared_ptr<TetMesh>>(module, "TetMesh")
-      .def(py::init(&mesh_of), "points"_a, "tets"_a, "labels"_a, "names"_a)
+      .def(py::init(&mesh_of), "points"_a, "tets"_a, "labels"_a, "names"_a, "colours"_a)
       .def_property_readonly("points", &property<double, &TetMesh::points_mm>)
       .def_property_readonly("tets", &property<VertexId, &TetMesh::tets>)
       .def_property_readonly("labels", &property<Label, &TetMesh::labels>)
-      .def_property_readonly("names", [](const TetMesh& mesh) { return names_in(mesh.names); });
+      .def_property_readonly("names", [](const TetMesh& mesh) { return names_in(mesh.names); })
+      .def_property_readonly("colours", [](const TetMesh& mesh) {
+        py::dict colours;
+        for (const auto& [label, c] : colours_in(mesh.names))
+          colours[py::int_(label)] = py::make_tuple(c[0], c[1], c[2]);
+        return colours;
+      });
   module.def("interfaces_of", &interface_arrays, "mesh"_a);
 }
 
