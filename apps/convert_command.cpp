@@ -8,9 +8,11 @@
 #include <vector>
 
 #include "anatomesh/io.h"
+#include "anatomesh/quadratic.h"
 #include "apps/exit_status.h"
 #include "apps/images.h"
 #include "apps/label_names.h"
+#include "apps/mesh_options.h"
 #include "apps/messages.h"
 #include "apps/output_paths.h"
 #include "apps/text_table.h"
@@ -23,6 +25,7 @@ struct ConvertRequest {
   std::filesystem::path out;
   std::filesystem::path names;  ///< empty: none
   bool per_tissue = false;
+  int order = 0;  ///< 0: that of the mesh
 };
 
 /// Writes the mesh, or the surface of each tissue; returns the files.
@@ -37,6 +40,8 @@ int run_convert(const ConvertRequest& request, const Interrupt& interrupt) {
   require_different_files({request.names, request.out});
   const LabelTable names = read_names(request.names);
   TetMesh mesh = read_mesh(request.in);
+  if (request.order == 1) mesh = linear_mesh(mesh);
+  if (request.order == 2) mesh = quadratic_mesh(mesh);
   const std::size_t named = take_names(mesh.names, names, {mesh.labels.begin(), mesh.labels.end()});
   const std::string warning = foreign_table(request.names, named, quoted({request.in}));
   interrupt.throw_if_requested();
@@ -60,6 +65,7 @@ Command add_convert_command(CLI::App& program) {
   command->add_option("OUT", request->out, "mesh to write; .stl, .ply, .obj and .vtp hold its surfaces")->required();
   command->add_flag("--per-tissue", request->per_tissue,
                     "one closed surface a tissue: OUT.stl stands for OUT_NAME.stl, or OUT_label_7.stl without a name");
+  add_order_option(*command, "make linear tetrahedra (1) or quadratic ones (2) [as they are]", request->order);
   return {command, [request](const Interrupt& interrupt) { return run_convert(*request, interrupt); }};
 }
 

@@ -57,6 +57,15 @@ void to_json(Json& json, const Conformity& v) {
           {"voxel_centres_in_several_tets", v.voxel_centres_in_several_tets}};
 }
 
+void to_json(Json& json, const Curves& v) {
+  json = {{"tets", v.tets},
+          {"curved_tets", v.curved_tets},
+          {"folded", v.folded},
+          {"min_jacobian", v.min_jacobian},
+          {"min_dihedral_deg", v.min_dihedral_deg},
+          {"max_dihedral_deg", v.max_dihedral_deg}};
+}
+
 void to_json(Json& json, const OneWayDistance& v) {
   json = {{"mean_mm", v.mean_mm}, {"p95_mm", v.p95_mm}, {"max_mm", v.max_mm}};
 }
@@ -132,8 +141,9 @@ void to_json(Json& json, const Summary& v) {
 
 void to_json(Json& json, const Assessment& v) {
   json = {{"has_image", v.has_image},   {"has_distances", v.has_distances},
-          {"conformity", v.conformity}, {"whole", v.whole},
-          {"summary", v.summary},       {"tissues", v.tissues}};
+          {"conformity", v.conformity}, {"curves", v.curves},
+          {"whole", v.whole},           {"summary", v.summary},
+          {"tissues", v.tissues}};
   if (v.has_image) return;
   json["whole"]["fidelity"] = nullptr;
   for (Json& tissue : json["tissues"]) tissue["fidelity"] = nullptr;
@@ -176,8 +186,13 @@ void to_json(Json& json, const DeformOptions& v) {
 }
 
 void to_json(Json& json, const Options& v) {
-  json = {{"lattice", v.lattice}, {"deform", v.deform},   {"labels", v.labels},
-          {"frame", v.frame},     {"threads", v.threads}, {"max_memory_gib", v.max_memory_gib}};
+  json = {{"lattice", v.lattice},
+          {"deform", v.deform},
+          {"labels", v.labels},
+          {"frame", v.frame},
+          {"order", v.order},
+          {"threads", v.threads},
+          {"max_memory_gib", v.max_memory_gib}};
 }
 
 void to_json(Json& json, const AssessOptions& v) {

@@ -204,6 +204,9 @@ void add_mesh_options(CLI::App& command, MeshRequest& request) {
   add_material_options(command, request);
   add_labels_option(command, request.ranges);
   add_frame_option(command, request.options.frame);
+  add_order_option(command,
+                   "1: linear tetrahedra, 2: quadratic ones, with nodes on their edges that follow the surfaces [1]",
+                   request.options.order);
   add_number(command, "--threads", "N", "threads; 0 takes all cores [0]", request.options.threads);
   add_number(command, "--max-memory", "GIB",
              "refuse a mesh that takes more by estimate; 0 takes the memory that is free [0]",
@@ -218,6 +221,10 @@ void add_bound_options(CLI::App& command, double& min_dihedral_deg, double& max_
 
 void add_frame_option(CLI::App& command, Frame& frame) {
   add_choice<Frame>(command, "--frame", "space of the mesh [lps]", {{"lps", Frame::lps}, {"ras", Frame::ras}}, frame);
+}
+
+void add_order_option(CLI::App& command, const std::string& help, int& order) {
+  add_choice<int>(command, "--order", help, {{"1", 1}, {"2", 2}}, order);
 }
 
 CLI::Option& add_labels_option(CLI::App& command, std::vector<LabelRange>& ranges) {

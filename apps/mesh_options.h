@@ -33,6 +33,9 @@ void add_bound_options(CLI::App& command, double& min_dihedral_deg, double& max_
 /// --frame
 void add_frame_option(CLI::App& command, Frame& frame);
 
+/// --order
+void add_order_option(CLI::App& command, const std::string& help, int& order);
+
 /// --labels
 CLI::Option& add_labels_option(CLI::App& command, std::vector<LabelRange>& ranges);
 

@@ -60,7 +60,8 @@ std::string mesh_table(const MeshSummary& summary) {
   std::string text;
   text += field("mesh", fmt::format("{}, {}, {} frame in mm", summary.mesh_file.string(), byte_size(summary.mesh_bytes),
                                     result.options.frame == Frame::lps ? "LPS" : "RAS"));
-  text += field("tetrahedra", grouped(result.mesh.tets.size()));
+  const char* kind = result.mesh.edge_nodes.empty() ? "" : " quadratic ones";
+  text += field("tetrahedra", grouped(result.mesh.tets.size()) + kind);
   text += field("vertices", grouped(result.mesh.points_mm.size()));
   text += field("dihedral angles",
                 fmt::format("{} to {} degrees", fixed(shapes.min_dihedral_deg, 2), fixed(shapes.max_dihedral_deg, 2)));

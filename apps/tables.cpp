@@ -147,6 +147,15 @@ std::string quality_lines(const Quality& q) {
   return text + dihedral_histogram(q);
 }
 
+/// Nothing of a linear mesh.
+std::string curve_lines(const Curves& c) {
+  if (c.tets == 0) return {};
+  return field("quadratic",
+               fmt::format("{} curved, least Jacobian {} of the straight one's, {} to {} degrees at corners",
+                           grouped(c.curved_tets), fixed(c.min_jacobian, 3), fixed(c.min_dihedral_deg, 3),
+                           fixed(c.max_dihedral_deg, 3)));
+}
+
 std::string fidelity_lines(const Assessment& a) {
   const Summary& s = a.summary;
   std::string text;
@@ -194,7 +203,8 @@ std::string assessment_tables(const Assessment& assessment, TissueRows rows, con
   const auto section = [&](const char* name, const std::string& lines, const std::vector<TissueColumn>& shown) {
     return fmt::format("{}\n{}\n{}{}\n", name, lines, heading, tissue_table(shown, assessment.whole, tissues, names));
   };
-  std::string text = section("QUALITY", quality_lines(assessment.whole.quality), quality_columns());
+  std::string text =
+      section("QUALITY", curve_lines(assessment.curves) + quality_lines(assessment.whole.quality), quality_columns());
   if (assessment.has_image) text += section("FIDELITY", fidelity_lines(assessment), fidelity_columns());
   return text + section("TOPOLOGY", topology_lines(assessment), topology_columns());
 }

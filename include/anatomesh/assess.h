@@ -74,6 +74,16 @@ struct Conformity {
   std::uint64_t voxel_centres_in_several_tets = 0;  ///< strictly inside more than one; 0 without an image
 };
 
+/// How far quadratic tetrahedra are curved; the rest of an assessment is about the straight ones between their corners.
+struct Curves {
+  std::uint64_t tets = 0;              ///< quadratic ones; 0: the mesh is linear, and nothing below is measured
+  std::uint64_t curved_tets = 0;       ///< with an edge node off the middle of its chord by 1e-9 of it and more
+  std::uint64_t folded = 0;            ///< whose Jacobian is not proved to be positive everywhere
+  double min_jacobian = kNotMeasured;  ///< least Jacobian over that of the straight tetrahedron, a lower bound; <= 1
+  double min_dihedral_deg = kNotMeasured;  ///< between tangent planes of faces at the corners; 0 to 180
+  double max_dihedral_deg = kNotMeasured;  ///< 0 to 180
+};
+
 /// Distances from samples of one surface to all of another.
 struct OneWayDistance {
   double mean_mm = kNotMeasured;  ///< weighted by the area each sample stands for
@@ -174,6 +184,7 @@ struct Assessment {
   bool has_image = false;
   bool has_distances = false;
   Conformity conformity;
+  Curves curves;
   TissueAssessment whole;                 ///< all tissues as one; whole.quality is that of the mesh
   std::vector<TissueAssessment> tissues;  ///< ascending; the labels of the mesh and of the image
   Summary summary;
@@ -190,7 +201,8 @@ struct AssessOptions {
   double min_mean_ratio = 0.3;
 };
 
-/// Measures a mesh, against the image it was made from if there is one. Tetrahedra of label 0 are left out.
+/// Measures a mesh, against the image it was made from if there is one. Tetrahedra of label 0 are left out. Of
+/// quadratic tetrahedra the corners count, but for the curves.
 /// The result does not depend on the number of threads. Cost: some seconds for a million tetrahedra and as many
 /// voxels as an ordinary image has, mostly for the distances; memory: about 300 bytes a tetrahedron, one byte a voxel.
 /// Throws InvalidInput (a vertex that does not exist, a coordinate that is not finite, arrays whose sizes disagree),
@@ -211,8 +223,9 @@ struct ShapeSummary {
 ShapeSummary summarise_shapes(const TetMesh& mesh);
 
 /// One sentence for each guarantee that the mesh breaks; empty: all hold. Validity: positive volumes, no face in more
-/// than two tetrahedra, no hanging, duplicate or unused vertex, no overlap; the bounds of the options; every label of
-/// the image and no other in the mesh; the mesh in its place in the image (Dice of the union at least 0.5).
+/// than two tetrahedra, no hanging, duplicate or unused vertex, no overlap; the bounds of the options, at the corners
+/// of curved tetrahedra, too, and positive Jacobians of these; every label of the image and no other in the mesh; the
+/// mesh in its place in the image (Dice of the union at least 0.5).
 std::vector<std::string> failed_guarantees(const Assessment& assessment, const AssessOptions& options = {});
 
 }  // namespace anatomesh

@@ -26,6 +26,9 @@ struct Interface {
 /// Vertices of a face, anticlockwise as seen from outside its tetrahedron.
 std::array<VertexId, 3> corners_of(const TetMesh& mesh, TetFace face);
 
+/// Edge nodes of a face of a quadratic tetrahedron: the first between the first two of corners_of(), and so on round.
+std::array<VertexId, 3> edge_nodes_of(const TetMesh& mesh, TetFace face);
+
 /// All interfaces, each face once, sorted by inside, then outside. A tetrahedron labelled 0 counts as any other. A
 /// face of more than two tetrahedra, which no sound mesh has, lies on the skin of each. Cost: sorting the faces, about
 /// 0.3 us a tetrahedron; 64 bytes a tetrahedron meanwhile.

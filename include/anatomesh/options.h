@@ -66,6 +66,7 @@ struct Options {
   DeformOptions deform;
   std::vector<Label> labels;  ///< mesh these only, the rest is background; empty: all
   Frame frame = Frame::lps;   ///< space of the resulting mesh
+  int order = 1;              ///< 1: linear tetrahedra, 2: quadratic ones, by quadratic_mesh() within the bounds
   int threads = 0;            ///< >= 0; 0: all cores. The result does not depend on it
   double max_memory_gib = 0;  ///< refuse a mesh that takes more by estimate; >= 0; 0: the memory this machine has free
 };

@@ -8,8 +8,10 @@
 #include <utility>
 
 #include "anatomesh/errors.h"
+#include "anatomesh/quadratic.h"
 #include "assess/adjacency.h"
 #include "assess/conformity.h"
+#include "assess/curves.h"
 #include "assess/quality.h"
 #include "assess/rasterise.h"
 #include "assess/surface.h"
@@ -244,6 +246,12 @@ Summary sum_up(const std::vector<TissueAssessment>& tissues, const Image* image)
 
 Assessment assess(const TetMesh& given, const LabelImage* image, const AssessOptions& options,
                   const Progress& progress) {
+  if (!given.edge_nodes.empty()) {
+    const Curves curves = measure_curves(given);
+    Assessment result = assess(linear_mesh(given), image, options, progress);
+    result.curves = curves;
+    return result;
+  }
   if (image != nullptr) check_image(*image);
   Assessment result;
   result.has_image = image != nullptr;

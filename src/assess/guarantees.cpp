@@ -28,9 +28,12 @@ std::string sentence(const Parts&... parts) {
 void check_counts(const Assessment& a, std::vector<std::string>& failed) {
   const Conformity& c = a.conformity;
   const Quality& q = a.whole.quality;
+  const Curves& curves = a.curves;
   const Forbidden table[] = {
       {q.inverted, "tetrahedron is inverted", "tetrahedra are inverted"},
       {q.degenerate, "tetrahedron has no volume", "tetrahedra have no volume"},
+      {curves.folded, "curved tetrahedron may be folded: its Jacobian is not positive everywhere",
+       "curved tetrahedra may be folded: their Jacobians are not positive everywhere"},
       {c.faces_in_more_than_two_tets, "face belongs to more than two tetrahedra",
        "faces belong to more than two tetrahedra"},
       {c.folded_tets, "tetrahedron overlaps the one behind a face", "tetrahedra overlap the one behind a face"},
@@ -47,15 +50,23 @@ void check_counts(const Assessment& a, std::vector<std::string>& failed) {
   if (c.negative_orientation) failed.push_back("the tetrahedra are negatively oriented: their volumes are negative");
 }
 
-void check_bounds(const Quality& q, const AssessOptions& o, std::vector<std::string>& failed) {
-  if (q.min_dihedral_deg < o.min_dihedral_deg - kAngleRoundingDeg) {
-    failed.push_back(sentence("the smallest dihedral angle is ", q.min_dihedral_deg, " degrees, below the bound of ",
-                              o.min_dihedral_deg));
+void check_angles(const char* which, double min_deg, double max_deg, const AssessOptions& o,
+                  std::vector<std::string>& failed) {
+  if (min_deg < o.min_dihedral_deg - kAngleRoundingDeg) {
+    failed.push_back(
+        sentence("the smallest ", which, " is ", min_deg, " degrees, below the bound of ", o.min_dihedral_deg));
   }
-  if (q.max_dihedral_deg > o.max_dihedral_deg + kAngleRoundingDeg) {
-    failed.push_back(sentence("the largest dihedral angle is ", q.max_dihedral_deg, " degrees, above the bound of ",
-                              o.max_dihedral_deg));
+  if (max_deg > o.max_dihedral_deg + kAngleRoundingDeg) {
+    failed.push_back(
+        sentence("the largest ", which, " is ", max_deg, " degrees, above the bound of ", o.max_dihedral_deg));
   }
+}
+
+void check_bounds(const Assessment& a, const AssessOptions& o, std::vector<std::string>& failed) {
+  const Quality& q = a.whole.quality;
+  const Curves& curves = a.curves;
+  check_angles("dihedral angle", q.min_dihedral_deg, q.max_dihedral_deg, o, failed);
+  check_angles("dihedral angle of curved faces", curves.min_dihedral_deg, curves.max_dihedral_deg, o, failed);
   if (q.min_mean_ratio < o.min_mean_ratio - kMeanRatioRounding) {
     failed.push_back(
         sentence("the smallest mean ratio is ", q.min_mean_ratio, ", below the bound of ", o.min_mean_ratio));
@@ -84,7 +95,7 @@ std::vector<std::string> failed_guarantees(const Assessment& assessment, const A
   std::vector<std::string> failed;
   if (!assessment.whole.in_mesh) failed.push_back("the mesh has no labelled tetrahedron");
   check_counts(assessment, failed);
-  check_bounds(assessment.whole.quality, options, failed);
+  check_bounds(assessment, options, failed);
   if (assessment.has_image) check_against_image(assessment, failed);
   return failed;
 }

@@ -11,7 +11,6 @@
 #include "base/vec.h"
 
 namespace anatomesh::assess_detail {
-namespace {
 
 void check_mesh(const TetMesh& mesh) {
   if (mesh.labels.size() != mesh.tets.size()) {
@@ -32,6 +31,8 @@ void check_mesh(const TetMesh& mesh) {
     }
   }
 }
+
+namespace {
 
 std::vector<Label> union_of(std::vector<Label> labels, const std::vector<Label>& others) {
   labels.insert(labels.end(), others.begin(), others.end());

@@ -34,7 +34,10 @@ struct TissueMesh {
   }
 };
 
-/// Throws InvalidInput when the arrays of the mesh disagree or a point is not finite. image_labels: ascending.
+/// Throws InvalidInput when points, corners and labels of the mesh do not fit together or a point is not finite.
+void check_mesh(const TetMesh& mesh);
+
+/// Of a mesh that check_mesh() finds no fault with, or it throws what that does. image_labels: ascending.
 /// The points are not copied: the mesh must outlive the result.
 TissueMesh make_tissue_mesh(const TetMesh& mesh, const std::vector<Label>& image_labels);
 

@@ -8,12 +8,14 @@
 #include <cstdint>
 #include <map>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "anatomesh/errors.h"
+#include "io/element_nodes.h"
 #include "io/label_comment.h"
 #include "io/mesh_surfaces.h"
 #include "io/number_text.h"
@@ -56,10 +58,10 @@ void put_elements(TextOutput& out, const TetMesh& mesh, const std::map<Label, st
   std::map<Label, std::vector<std::size_t>> tets;
   for (std::size_t n = 0; n < mesh.tets.size(); ++n) tets[mesh.labels[n]].push_back(n);
   for (const auto& [label, members] : tets) {
-    out << "*ELEMENT, TYPE=C3D4, ELSET=" << sets.at(label) << '\n';
+    out << "*ELEMENT, TYPE=" << (is_quadratic(mesh) ? "C3D10" : "C3D4") << ", ELSET=" << sets.at(label) << '\n';
     for (const std::size_t n : members) {
       out << n + 1;
-      for (const VertexId vertex : mesh.tets[n]) out << ", " << std::uint64_t{vertex} + 1;
+      for (const VertexId vertex : nodes_of_tet(mesh, n)) out << ", " << std::uint64_t{vertex} + 1;
       out << '\n';
     }
   }
@@ -96,10 +98,12 @@ std::string_view without_quotes(std::string_view text) {
   return quoted ? text.substr(1, text.size() - 2) : text;
 }
 
-/// Four corners and no more, with whatever formulation ("C3D4H", "C3D4T", "DC3D4").
-bool is_linear_tet(std::string_view type) {
+/// 4 or 10 nodes of a tetrahedron of whatever formulation ("C3D4H", "C3D10M", "DC3D4"); 0 of another element.
+std::size_t tet_nodes(std::string_view type) {
   if (type.starts_with("D")) type.remove_prefix(1);
-  return type.starts_with("C3D4") && type.find_first_of("0123456789", 4) == std::string_view::npos;
+  const std::size_t nodes = type.starts_with("C3D4") ? 4 : type.starts_with("C3D10") ? 10 : 0;
+  const bool is_other = type.find_first_of("0123456789", nodes == 10 ? 5 : 4) != std::string_view::npos;
+  return is_other ? 0 : nodes;
 }
 
 struct ElementSet {
@@ -123,7 +127,7 @@ class AbaqusReader {
     finish_element();
     if (is_ours_ && !is_whole_) text_.fail("it ends too early");
     if (mesh_.tets.empty() && !other_type_.empty()) {
-      throw InvalidInput(in_quotes(text_.path()) + " has no linear tetrahedra (C3D4), only elements of type " +
+      throw InvalidInput(in_quotes(text_.path()) + " has no tetrahedra (C3D4 or C3D10), only elements of type " +
                          other_type_);
     }
     sort_by_number(text_.path(), mesh_);
@@ -231,7 +235,8 @@ class AbaqusReader {
     refuse_input_file();
     const std::string type = in_capitals(parameter("TYPE"));
     set_ = parameters_.contains("ELSET") ? set_of(parameter("ELSET")) : kNoSet;
-    if (is_linear_tet(type)) {
+    if (const std::size_t nodes = tet_nodes(type); nodes > 0) {
+      element_.resize(1 + nodes);
       read_data_ = &AbaqusReader::read_element;
     } else if (other_type_.empty()) {
       other_type_ = type.substr(0, 40);
@@ -244,7 +249,7 @@ class AbaqusReader {
       if (field.empty()) continue;
       element_[element_size_++] = text_.number_from<std::int64_t>(field);
       if (element_size_ < element_.size()) continue;
-      mesh_.tets.push_back({element_[0], {element_[1], element_[2], element_[3], element_[4]}});
+      mesh_.add(element_[0], std::span(element_).subspan(1), 1);
       if (set_ != kNoSet) add_member(element_[0]);
       element_size_ = 0;
     }
@@ -363,7 +368,7 @@ class AbaqusReader {
   Parameters parameters_;                 // of the present keyword
   Part read_data_ = nullptr;              // for the lines below it; null: they say nothing about the mesh
   std::size_t set_ = kNoSet;              // that elements are added to
-  std::array<std::int64_t, 5> element_ = {};
+  std::vector<std::int64_t> element_;     // its number and nodes
   std::size_t element_size_ = 0;
   std::size_t set_members_left_;
   NumberedMesh mesh_;

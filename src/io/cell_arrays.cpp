@@ -12,8 +12,6 @@
 namespace anatomesh {
 namespace {
 
-constexpr std::int64_t kTetrahedron = 10;  // VTK_TETRA
-
 /// Names that tools give to the array of tissues, in small letters, the best first.
 constexpr std::array kLabelNames = {
     "label",       "labels",        "labelid",          "medit:ref", "gmsh:physical", "material",  "materials",
@@ -87,27 +85,44 @@ void check_offsets(const std::filesystem::path& path, const CellArrays& cells) {
   }
 }
 
-/// Cell n, which is a tetrahedron.
-std::array<VertexId, 4> tet_at(const std::filesystem::path& path, const CellArrays& cells, std::size_t n) {
-  if (cells.offsets[n + 1] - cells.offsets[n] != 4) {
-    throw_damaged(path, "cell " + number_text(n) + " is a tetrahedron without four corners");
-  }
-  std::array<VertexId, 4> tet;
-  for (std::size_t corner = 0; corner < 4; ++corner) {
-    const std::int64_t id = cells.corners[static_cast<std::size_t>(cells.offsets[n]) + corner];
+/// Nodes of cell n from its first-th on.
+template <std::size_t count>
+std::array<VertexId, count> nodes_at(const std::filesystem::path& path, const CellArrays& cells, std::size_t n,
+                                     std::size_t first) {
+  std::array<VertexId, count> nodes;
+  for (std::size_t node = 0; node < count; ++node) {
+    const std::int64_t id = cells.corners[static_cast<std::size_t>(cells.offsets[n]) + first + node];
     if (id < 0 || static_cast<std::size_t>(id) >= cells.points_mm.size()) {
       throw_damaged(path, "cell " + number_text(n) + " refers to point " + number_text(id) + " of " +
                               number_text(cells.points_mm.size()));
     }
-    tet[corner] = static_cast<VertexId>(id);
+    nodes[node] = static_cast<VertexId>(id);
   }
-  return tet;
+  return nodes;
+}
+
+/// Appends cell n, which is a tetrahedron.
+void add_tet(const std::filesystem::path& path, const CellArrays& cells, std::size_t n, TetMesh& mesh) {
+  const bool is_quadratic = cells.types[n] == kVtkQuadraticTetra;
+  if (cells.offsets[n + 1] - cells.offsets[n] != (is_quadratic ? 10 : 4)) {
+    throw_damaged(
+        path, "cell " + number_text(n) + " is a tetrahedron without " + (is_quadratic ? "ten nodes" : "four corners"));
+  }
+  mesh.tets.push_back(nodes_at<4>(path, cells, n, 0));
+  if (is_quadratic) mesh.edge_nodes.push_back(nodes_at<6>(path, cells, n, 4));
 }
 
 }  // namespace
 
 void throw_damaged(const std::filesystem::path& path, const std::string& why) {
   throw IoError(in_quotes(path) + " is truncated or damaged: " + why);
+}
+
+void check_kinds(const std::filesystem::path& path, std::size_t linear_tets, std::size_t quadratic_tets) {
+  if (linear_tets + quadratic_tets == 0) throw InvalidInput(in_quotes(path) + " has no tetrahedra of 4 or 10 nodes");
+  if (linear_tets == 0 || quadratic_tets == 0) return;
+  throw InvalidInput(in_quotes(path) + " has " + number_text(linear_tets) + " linear and " +
+                     number_text(quadratic_tets) + " quadratic tetrahedra; only one kind in a mesh can be read");
 }
 
 std::optional<std::size_t> label_array(const std::vector<CellArray>& arrays) {
@@ -132,11 +147,11 @@ TetMesh tet_mesh_from(const std::filesystem::path& path, CellArrays cells) {
   const std::vector<Label> labels = labels_of(path, cells);
   TetMesh mesh;
   for (std::size_t n = 0; n < cells.types.size(); ++n) {
-    if (cells.types[n] != kTetrahedron) continue;
-    mesh.tets.push_back(tet_at(path, cells, n));
+    if (cells.types[n] != kVtkTetra && cells.types[n] != kVtkQuadraticTetra) continue;
+    add_tet(path, cells, n, mesh);
     mesh.labels.push_back(labels[n]);
   }
-  if (mesh.tets.empty()) throw InvalidInput(in_quotes(path) + " has no linear tetrahedra");
+  check_kinds(path, mesh.tets.size() - mesh.edge_nodes.size(), mesh.edge_nodes.size());
   mesh.points_mm = std::move(cells.points_mm);
   mesh.names = names_of(path, cells);
   return mesh;

@@ -27,6 +27,9 @@ struct NameArrays {
 };
 inline constexpr NameArrays kNameArrays;
 
+/// VTK's numbers for kinds of cells.
+inline constexpr std::int64_t kVtkTetra = 10, kVtkQuadraticTetra = 24;
+
 /// What a mesh file holds; nothing of it is checked yet.
 struct CellArrays {
   std::vector<Vec3> points_mm;
@@ -42,9 +45,12 @@ struct CellArrays {
 /// Which of the arrays holds the tissues, by its name and type; nothing where none does.
 std::optional<std::size_t> label_array(const std::vector<CellArray>& arrays);
 
-/// Takes the linear tetrahedra out, as read_mesh() says. Throws IoError (arrays that do not fit together),
-/// InvalidInput (no tetrahedra, labels that are none).
+/// Takes the tetrahedra out, as read_mesh() says. Throws IoError (arrays that do not fit together),
+/// InvalidInput (no tetrahedra, linear and quadratic ones, labels that are none).
 TetMesh tet_mesh_from(const std::filesystem::path& path, CellArrays cells);
+
+/// Throws InvalidInput unless a file has tetrahedra of one kind.
+void check_kinds(const std::filesystem::path& path, std::size_t linear_tets, std::size_t quadratic_tets);
 
 /// Throws IoError: "FILE is truncated or damaged: why".
 [[noreturn]] void throw_damaged(const std::filesystem::path& path, const std::string& why);

@@ -13,6 +13,7 @@
 #include "anatomesh/errors.h"
 #include "anatomesh/options.h"
 #include "io/cell_arrays.h"
+#include "io/element_nodes.h"
 #include "io/label_comment.h"
 #include "io/mesh_surfaces.h"
 #include "io/numbered_mesh.h"
@@ -86,10 +87,10 @@ void put_elements(TextOutput& out, const TetMesh& mesh, const std::vector<LabelC
   std::map<Label, std::vector<std::size_t>> tets;
   for (std::size_t n = 0; n < mesh.tets.size(); ++n) tets[mesh.labels[n]].push_back(n);
   for (const LabelComment& tissue : tissues) {
-    out << "    <Elements type=\"tet4\" name=\"" << tissue.set << "\">\n";
+    out << "    <Elements type=\"" << (is_quadratic(mesh) ? "tet10" : "tet4") << "\" name=\"" << tissue.set << "\">\n";
     for (const std::size_t n : tets[tissue.label]) {
       out << "      <elem id=\"" << n + 1 << "\">";
-      put_vertices(out, mesh.tets[n]);
+      put_vertices(out, nodes_of_tet(mesh, n));
       out << "</elem>\n";
     }
     out << "    </Elements>\n";
@@ -97,11 +98,12 @@ void put_elements(TextOutput& out, const TetMesh& mesh, const std::vector<LabelC
 }
 
 void put_surface(TextOutput& out, const TetMesh& mesh, const MeshSurface& surface) {
+  const char* facet = is_quadratic(mesh) ? "tri6" : "tri3";
   out << "    <Surface name=\"" << surface.name << "\">\n";
   for (std::size_t n = 0; n < surface.faces.size(); ++n) {
-    out << "      <tri3 id=\"" << n + 1 << "\">";
-    put_vertices(out, corners_of(mesh, surface.faces[n]));
-    out << "</tri3>\n";
+    out << "      <" << facet << " id=\"" << n + 1 << "\">";
+    put_vertices(out, nodes_of_face(mesh, surface.faces[n]));
+    out << "</" << facet << ">\n";
   }
   out << "    </Surface>\n    <NodeSet name=\"" << surface.name << "\">";
   put_vertices(out, vertices_of(mesh, surface.faces));
@@ -163,7 +165,9 @@ class FebioReader {
     }
     for (const pugi::xml_node nodes : section.children("Nodes")) read_nodes(nodes);
     for (const pugi::xml_node elements : section.children("Elements")) {
-      if (std::string_view(elements.attribute("type").value()) == "tet4") read_elements(elements);
+      const std::string_view type = elements.attribute("type").value();
+      if (type == "tet4") read_elements<4>(elements);
+      if (type == "tet10") read_elements<10>(elements);
     }
   }
 
@@ -174,10 +178,11 @@ class FebioReader {
     }
   }
 
+  template <std::size_t kNodes>
   void read_elements(pugi::xml_node elements) {
     const Label label = label_of(elements.attribute("name").value());
     for (const pugi::xml_node element : elements.children("elem")) {
-      mesh_.tets.push_back({id_of(element), numbers_of<std::int64_t, 4>(element), label});
+      mesh_.add(id_of(element), numbers_of<std::int64_t, kNodes>(element), label);
     }
   }
 

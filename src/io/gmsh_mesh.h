@@ -9,8 +9,11 @@
 #include <filesystem>
 
 #include "anatomesh/tet_mesh.h"
+#include "io/element_nodes.h"
 
 namespace anatomesh {
+
+inline constexpr EdgeNodeOrder kGmshOrder = {0, 1, 2, 3, 5, 4};
 
 /// Throws IoError, InvalidInput (the label 0, which is no number of a group).
 void write_gmsh(const std::filesystem::path& path, const TetMesh& mesh);

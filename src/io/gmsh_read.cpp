@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "anatomesh/errors.h"
 #include "io/gmsh_mesh.h"
@@ -23,7 +24,9 @@
 namespace anatomesh {
 namespace {
 
-constexpr int kTetrahedron = 4;
+constexpr int kTetrahedron = 4, kQuadraticTetrahedron = 11;
+
+bool is_tetrahedron(int type) { return type == kTetrahedron || type == kQuadraticTetrahedron; }
 
 /// Corners of each kind of element from 1 on, 0 for those that are not known.
 constexpr std::array<std::size_t, 94> corner_counts() {
@@ -247,14 +250,15 @@ class GmshReader {
       const auto volume = next<std::int32_t>(), type = next<std::int32_t>();
       const std::size_t corners = corners_of(type);
       const std::size_t count = next_count(2 * (corners + 1), 8 * (corners + 1));
-      if (type != kTetrahedron) {
+      if (!is_tetrahedron(type)) {
         skip<std::uint64_t>(count * (corners + 1));
         continue;
       }
+      nodes_.resize(corners);
       for (std::size_t n = 0; n < count; ++n) {
-        NumberedTet tet{next_number()};
-        for (std::int64_t& corner : tet.corners) corner = next_number();
-        keep(tet, number_of(volume));
+        const std::int64_t number = next_number();
+        for (std::int64_t& node : nodes_) node = next_number();
+        keep(number, number_of(volume));
       }
     }
   }
@@ -301,19 +305,18 @@ class GmshReader {
       if (n < 2 && group == 0) group = tag;
     }
     const std::size_t corners = corners_of(type);
-    if (type != kTetrahedron) return skip<std::int32_t>(corners);
-    NumberedTet tet{number};
-    for (std::int64_t& corner : tet.corners) corner = next<std::int32_t>();
-    keep(tet, tags < 1 ? 1 : group);
+    if (!is_tetrahedron(type)) return skip<std::int32_t>(corners);
+    nodes_.resize(corners);
+    for (std::int64_t& node : nodes_) node = next<std::int32_t>();
+    keep(number, tags < 1 ? 1 : group);
   }
 
-  void keep(NumberedTet& tet, std::int64_t label) {
+  void keep(std::int64_t number, std::int64_t label) {
     if (!is_label(label)) {
-      throw InvalidInput("element " + number_text(tet.number) + " of " + in_quotes(text_.path()) + " is in the group " +
+      throw InvalidInput("element " + number_text(number) + " of " + in_quotes(text_.path()) + " is in the group " +
                          number_text(label) + "; " + kLabelRule);
     }
-    tet.label = static_cast<Label>(label);
-    mesh_.tets.push_back(tet);
+    mesh_.add(number, nodes_, static_cast<Label>(label), kGmshOrder);
   }
 
   TextCursor text_;
@@ -322,6 +325,7 @@ class GmshReader {
   bool is_swapped_ = false;
   bool has_elements_ = false;
   std::map<std::int32_t, std::int64_t> number_of_volume_;
+  std::vector<std::int64_t> nodes_;  // of the present tetrahedron
   NumberedMesh mesh_;
   LabelTable names_;
 };

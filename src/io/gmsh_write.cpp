@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "anatomesh/errors.h"
+#include "io/element_nodes.h"
 #include "io/gmsh_mesh.h"
 #include "io/mesh_groups.h"
 #include "io/output_file.h"
@@ -16,7 +17,12 @@ namespace anatomesh {
 namespace {
 
 constexpr std::size_t kMostNameBytes = 120;  // Gmsh reads lines of 128
-constexpr int kTriangle = 2, kTetrahedron = 4;
+
+/// Numbers of the kinds of elements.
+struct ElementTypes {
+  int triangle = 2, tetrahedron = 4;
+};
+constexpr ElementTypes kQuadraticTypes = {9, 11};
 
 /// What the points lie in.
 struct Box {
@@ -67,7 +73,7 @@ class GmshModel {
       Entity& surface = entities_.emplace_back(Entity{2, group.tag});
       surface.elements.resize(group.between.faces.size());
       for (const TetFace face : group.between.faces) {
-        for (const VertexId vertex : corners_of(mesh_, face)) surface.box.add(mesh_.points_mm[vertex]);
+        for (const VertexId vertex : nodes_of_face(mesh_, face)) surface.box.add(mesh_.points_mm[vertex]);
       }
     }
   }
@@ -88,7 +94,7 @@ class GmshModel {
       volume_of_tet_.push_back(place.at(mesh_.labels[n]));
       Entity& volume = entities_[volume_of_tet_.back()];
       volume.elements.push_back(n);
-      for (const VertexId vertex : mesh_.tets[n]) volume.box.add(mesh_.points_mm[vertex]);
+      for (const VertexId vertex : nodes_of_tet(mesh_, n)) volume.box.add(mesh_.points_mm[vertex]);
     }
   }
 
@@ -101,11 +107,11 @@ class GmshModel {
     };
     for (std::size_t n = 0; n < groups_.surfaces.size(); ++n) {
       for (const TetFace face : groups_.surfaces[n].between.faces) {
-        for (const VertexId vertex : corners_of(mesh_, face)) place(vertex, n);
+        for (const VertexId vertex : nodes_of_face(mesh_, face)) place(vertex, n);
       }
     }
     for (std::size_t n = 0; n < mesh_.tets.size(); ++n) {
-      for (const VertexId vertex : mesh_.tets[n]) place(vertex, volume_of_tet_[n]);
+      for (const VertexId vertex : nodes_of_tet(mesh_, n)) place(vertex, volume_of_tet_[n]);
     }
     for (VertexId vertex = 0; vertex < entity_of.size(); ++vertex) {
       const std::size_t entity = entity_of[vertex] == none ? groups_.surfaces.size() : entity_of[vertex];
@@ -154,24 +160,24 @@ class GmshModel {
     for (const SurfaceGroup& group : groups_.surfaces) number += group.between.faces.size();
     out_ << "$Elements\n" << entities_.size() << ' ' << number << " 1 " << number << '\n';
     number = mesh_.tets.size();
+    const ElementTypes types = is_quadratic(mesh_) ? kQuadraticTypes : ElementTypes();
     for (std::size_t n = 0; n < entities_.size(); ++n) {
       const Entity& entity = entities_[n];
       const bool is_surface = entity.dimension == 2;
-      out_ << entity.dimension << ' ' << entity.tag << ' ' << (is_surface ? kTriangle : kTetrahedron) << ' '
+      out_ << entity.dimension << ' ' << entity.tag << ' ' << (is_surface ? types.triangle : types.tetrahedron) << ' '
            << entity.elements.size() << '\n';
       if (is_surface) {
-        for (const TetFace face : groups_.surfaces[n].between.faces) put_element(++number, corners_of(mesh_, face));
+        for (const TetFace face : groups_.surfaces[n].between.faces) put_element(++number, nodes_of_face(mesh_, face));
       } else {
-        for (const std::size_t tet : entity.elements) put_element(tet + 1, mesh_.tets[tet]);
+        for (const std::size_t tet : entity.elements) put_element(tet + 1, nodes_of_tet(mesh_, tet, kGmshOrder));
       }
     }
     out_ << "$EndElements\n";
   }
 
-  template <typename Corners>
-  void put_element(std::size_t number, const Corners& corners) {
+  void put_element(std::size_t number, const ElementNodes& nodes) {
     out_ << number;
-    for (const VertexId vertex : corners) out_ << ' ' << std::size_t{vertex} + 1;
+    for (const VertexId vertex : nodes) out_ << ' ' << std::size_t{vertex} + 1;
     out_ << '\n';
   }
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "anatomesh/errors.h"
+#include "io/element_nodes.h"
 #include "io/label_comment.h"
 #include "io/label_values.h"
 #include "io/mesh_groups.h"
@@ -34,18 +35,17 @@ void put_names(TextOutput& out, const TetMesh& mesh, const MeshGroups& groups) {
   for (const SurfaceGroup& group : groups.surfaces) out << "# surface " << group.tag << ' ' << group.name << '\n';
 }
 
-template <typename Corners>
-void put_element(TextOutput& out, const Corners& corners, Label reference) {
-  for (const VertexId vertex : corners) out << std::size_t{vertex} + 1 << ' ';
+void put_element(TextOutput& out, const ElementNodes& nodes, Label reference) {
+  for (const VertexId vertex : nodes) out << std::size_t{vertex} + 1 << ' ';
   out << reference << '\n';
 }
 
 void put_triangles(TextOutput& out, const TetMesh& mesh, const MeshGroups& groups) {
   std::size_t count = 0;
   for (const SurfaceGroup& group : groups.surfaces) count += group.between.faces.size();
-  out << "\nTriangles\n" << count << '\n';
+  out << (is_quadratic(mesh) ? "\nTrianglesP2\n" : "\nTriangles\n") << count << '\n';
   for (const SurfaceGroup& group : groups.surfaces) {
-    for (const TetFace face : group.between.faces) put_element(out, corners_of(mesh, face), group.tag);
+    for (const TetFace face : group.between.faces) put_element(out, nodes_of_face(mesh, face), group.tag);
   }
 }
 
@@ -57,8 +57,8 @@ std::string medit_text(const TetMesh& mesh) {
   out << "\nVertices\n" << mesh.points_mm.size() << '\n';
   for (const Vec3& point : mesh.points_mm) out << point[0] << ' ' << point[1] << ' ' << point[2] << " 0\n";
   put_triangles(out, mesh, groups);
-  out << "\nTetrahedra\n" << mesh.tets.size() << '\n';
-  for (std::size_t n = 0; n < mesh.tets.size(); ++n) put_element(out, mesh.tets[n], mesh.labels[n]);
+  out << (is_quadratic(mesh) ? "\nTetrahedraP2\n" : "\nTetrahedra\n") << mesh.tets.size() << '\n';
+  for (std::size_t n = 0; n < mesh.tets.size(); ++n) put_element(out, nodes_of_tet(mesh, n), mesh.labels[n]);
   out << "\nEnd\n";
   return out.bytes();
 }
@@ -105,9 +105,10 @@ class MeditReader {
       std::string_view name;
       void (MeditReader::*read)();
     };
-    static constexpr std::array<Named, 3> kSections = {{{"Dimension", &MeditReader::dimension},
+    static constexpr std::array<Named, 4> kSections = {{{"Dimension", &MeditReader::dimension},
                                                         {"Vertices", &MeditReader::vertices},
-                                                        {"Tetrahedra", &MeditReader::tetrahedra}}};
+                                                        {"Tetrahedra", &MeditReader::tetrahedra<4>},
+                                                        {"TetrahedraP2", &MeditReader::tetrahedra<10>}}};
     for (const Named& section : kSections) {
       if (section.name != name) continue;
       (this->*section.read)();
@@ -143,17 +144,18 @@ class MeditReader {
     }
   }
 
+  template <std::size_t kNodes>
   void tetrahedra() {
-    for (std::size_t left = text_.count_of(10); left > 0; --left) {
-      NumberedTet tet{static_cast<std::int64_t>(mesh_.tets.size()) + 1};
-      for (std::int64_t& corner : tet.corners) corner = text_.number<std::int64_t>();
+    for (std::size_t left = text_.count_of(2 * kNodes + 2); left > 0; --left) {
+      const auto number = static_cast<std::int64_t>(mesh_.tets.size()) + 1;
+      std::array<std::int64_t, kNodes> nodes;
+      for (std::int64_t& node : nodes) node = text_.number<std::int64_t>();
       const auto reference = text_.number<std::int64_t>();
       if (!is_label(reference)) {
-        throw InvalidInput("tetrahedron " + number_text(tet.number) + " of " + in_quotes(text_.path()) +
+        throw InvalidInput("tetrahedron " + number_text(number) + " of " + in_quotes(text_.path()) +
                            " has the reference " + number_text(reference) + "; " + kLabelRule);
       }
-      tet.label = static_cast<Label>(reference);
-      mesh_.tets.push_back(tet);
+      mesh_.add(number, nodes, static_cast<Label>(reference));
     }
   }
 

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "base/sort_and_unify.h"
+#include "io/element_nodes.h"
 #include "io/interface_names.h"
 
 namespace anatomesh {
@@ -25,7 +26,7 @@ std::vector<VertexId> vertices_of(const TetMesh& mesh, const std::vector<TetFace
   std::vector<VertexId> vertices;
   vertices.reserve(3 * faces.size());
   for (const TetFace face : faces) {
-    for (const VertexId vertex : corners_of(mesh, face)) vertices.push_back(vertex);
+    for (const VertexId vertex : nodes_of_face(mesh, face)) vertices.push_back(vertex);
   }
   sort_and_unify(vertices);
   return vertices;

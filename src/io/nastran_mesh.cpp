@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "anatomesh/errors.h"
+#include "io/element_nodes.h"
 #include "io/label_comment.h"
 #include "io/number_text.h"
 #include "io/numbered_mesh.h"
@@ -105,10 +106,15 @@ void put_points(TextOutput& out, const TetMesh& mesh) {
 
 void put_tets(TextOutput& out, const TetMesh& mesh) {
   for (std::size_t n = 0; n < mesh.tets.size(); ++n) {
+    constexpr std::size_t kFirstLine = 6;  // nodes in it
     out << "CTETRA  ";
     put_field(out, n + 1, kSmallField);
     put_field(out, mesh.labels[n], kSmallField);
-    for (const VertexId vertex : mesh.tets[n]) put_field(out, std::uint64_t{vertex} + 1, kSmallField);
+    std::size_t count = 0;
+    for (const VertexId vertex : nodes_of_tet(mesh, n)) {
+      if (count++ == kFirstLine) out << "+\n+       ";
+      put_field(out, std::uint64_t{vertex} + 1, kSmallField);
+    }
     out << '\n';
   }
 }
@@ -142,9 +148,6 @@ class NastranReader {
     while (!text_.at_end() && !is_at_end_) read_line(text_.line());
     take_entry();
     if (has_end_ && !is_at_end_) text_.fail("it ends too early");
-    if (mesh_.tets.empty() && has_quadratic_) {
-      throw InvalidInput(in_quotes(text_.path()) + " has no linear tetrahedra, only some of more than four corners");
-    }
     TetMesh mesh = tet_mesh_from(text_.path(), std::move(mesh_));
     mesh.names = std::move(names_);
     return mesh;
@@ -244,18 +247,26 @@ class NastranReader {
     }
   }
 
-  void take_tet() {
-    for (std::size_t n = 7; n < entry_.size(); ++n) {
-      if (entry_[n].empty()) continue;
-      has_quadratic_ = true;
-      return;
+  /// Nodes of the present tetrahedron, which may leave out edge nodes.
+  std::size_t node_count(std::int64_t number) const {
+    constexpr std::size_t kFirst = 7, kCount = 6;  // of the fields of edge nodes
+    std::size_t found = 0;
+    for (std::size_t n = kFirst; n < entry_.size(); ++n) found += !entry_[n].empty();
+    if (found > 0 && found < kCount) {
+      refuse("has " + number_text(found) + " edge nodes of tetrahedron " + number_text(number) +
+             "; 0 or 6 can be read");
     }
+    return 4 + found;
+  }
+
+  void take_tet() {
     const std::int64_t number = whole_number(1), property = field(2).empty() ? number : whole_number(2);
     if (property < 0 || property > std::numeric_limits<Label>::max()) {
       refuse("has the property " + number_text(property) + "; properties must be whole numbers from 0 to 4294967295");
     }
-    mesh_.tets.push_back(
-        {number, {whole_number(3), whole_number(4), whole_number(5), whole_number(6)}, static_cast<Label>(property)});
+    std::vector<std::int64_t> nodes(std::min<std::size_t>(node_count(number), 10));
+    for (std::size_t n = 0; n < nodes.size(); ++n) nodes[n] = whole_number(n + 3);
+    mesh_.add(number, nodes, static_cast<Label>(property));
   }
 
   TextCursor text_;
@@ -267,7 +278,6 @@ class NastranReader {
   LabelTable names_;
   bool has_end_ = false;  // but for files that are to be included in others
   bool is_at_end_ = false;
-  bool has_quadratic_ = false;
 };
 
 }  // namespace

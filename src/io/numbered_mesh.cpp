@@ -35,10 +35,30 @@ std::size_t quick_position_of(std::int64_t number, const std::vector<NumberedPoi
   return guess < points.size() && points[guess].number == number ? guess : position_of(number, points);
 }
 
+VertexId vertex_of(const std::filesystem::path& path, const NumberedMesh& mesh, const NumberedTet& tet,
+                   std::int64_t number) {
+  const std::size_t position = quick_position_of(number, mesh.points);
+  if (position < mesh.points.size()) return static_cast<VertexId>(position);
+  throw_damaged(path, "tetrahedron " + number_text(tet.number) + " refers to point " + number_text(number) +
+                          ", which is not there");
+}
+
 }  // namespace
 
+void NumberedMesh::add(std::int64_t number, std::span<const std::int64_t> nodes, Label label,
+                       const EdgeNodeOrder& order) {
+  NumberedTet& tet = tets.emplace_back();
+  tet.number = number;
+  tet.label = label;
+  std::copy_n(nodes.begin(), tet.corners.size(), tet.corners.begin());
+  if (nodes.size() == tet.corners.size()) return;
+  tet.edge_nodes = static_cast<std::uint32_t>(edge_nodes.size());
+  auto& between = edge_nodes.emplace_back();
+  for (std::size_t n = 0; n < order.size(); ++n) between[order[n]] = nodes[tet.corners.size() + n];
+}
+
 void sort_by_number(const std::filesystem::path& path, NumberedMesh& mesh) {
-  if (mesh.tets.empty()) throw InvalidInput(in_quotes(path) + " has no linear tetrahedra");
+  check_kinds(path, mesh.tets.size() - mesh.edge_nodes.size(), mesh.edge_nodes.size());
   if (mesh.points.size() > std::numeric_limits<VertexId>::max()) {
     throw InvalidInput(in_quotes(path) + " has " + number_text(mesh.points.size()) +
                        " points; at most 4294967295 can be read");
@@ -53,16 +73,11 @@ TetMesh tet_mesh_from(const std::filesystem::path& path, NumberedMesh mesh) {
   result.tets.reserve(mesh.tets.size());
   result.labels.reserve(mesh.tets.size());
   for (const NumberedTet& tet : mesh.tets) {
-    auto& corners = result.tets.emplace_back();
-    for (std::size_t n = 0; n < corners.size(); ++n) {
-      const std::size_t position = quick_position_of(tet.corners[n], mesh.points);
-      if (position == mesh.points.size()) {
-        throw_damaged(path, "tetrahedron " + number_text(tet.number) + " refers to point " +
-                                number_text(tet.corners[n]) + ", which is not there");
-      }
-      corners[n] = static_cast<VertexId>(position);
-    }
+    const auto vertex = [&](std::int64_t number) { return vertex_of(path, mesh, tet, number); };
+    std::ranges::transform(tet.corners, result.tets.emplace_back().begin(), vertex);
     result.labels.push_back(tet.label);
+    if (tet.edge_nodes == NumberedTet::kLinear) continue;
+    std::ranges::transform(mesh.edge_nodes[tet.edge_nodes], result.edge_nodes.emplace_back().begin(), vertex);
   }
   result.points_mm.reserve(mesh.points.size());
   for (const NumberedPoint& point : mesh.points) result.points_mm.push_back(point.place_mm);

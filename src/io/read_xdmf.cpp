@@ -21,7 +21,7 @@
 namespace anatomesh {
 namespace {
 
-constexpr std::int64_t kVtkTetrahedron = 10, kVtkOther = 0;
+constexpr std::int64_t kVtkOther = 0;
 constexpr std::uint64_t kMostNumbers = std::uint64_t{1} << 40;  // in one DataItem
 
 /// Corners of a kind of cell in a mixed topology; 0: their number stands before them.
@@ -29,13 +29,28 @@ struct MixedKind {
   std::int64_t code;
   std::size_t corners;
 };
-constexpr std::int64_t kTetrahedronCode = 6;
+constexpr std::int64_t kTetrahedronCode = 6, kQuadraticCode = 0x26;
 constexpr std::array kMixedKinds = {
     MixedKind{1, 0},     MixedKind{2, 0},     MixedKind{3, 0},     MixedKind{4, 3},     MixedKind{5, 4},
     MixedKind{6, 4},     MixedKind{7, 5},     MixedKind{8, 6},     MixedKind{9, 8},     MixedKind{0x22, 3},
     MixedKind{0x23, 9},  MixedKind{0x24, 6},  MixedKind{0x25, 8},  MixedKind{0x26, 10}, MixedKind{0x27, 13},
     MixedKind{0x28, 15}, MixedKind{0x29, 18}, MixedKind{0x30, 20}, MixedKind{0x31, 24}, MixedKind{0x32, 27},
 };
+
+std::int64_t vtk_type_of(std::int64_t mixed_code) {
+  return mixed_code == kTetrahedronCode ? kVtkTetra : mixed_code == kQuadraticCode ? kVtkQuadraticTetra : kVtkOther;
+}
+
+/// A topology of one kind of tetrahedra.
+struct TetKind {
+  std::string_view name;
+  std::int64_t vtk_type;
+  std::size_t nodes;
+};
+constexpr std::array<TetKind, 4> kTetKinds = {{{"tetrahedron", kVtkTetra, 4},
+                                               {"tetrahedron_10", kVtkQuadraticTetra, 10},
+                                               {"tet_10", kVtkQuadraticTetra, 10},
+                                               {"tetrahedron10", kVtkQuadraticTetra, 10}}};
 
 /// The value of the first of two attributes that is there, in small letters.
 std::string either(const pugi::xml_node& node, const char* one, const char* other) {
@@ -78,7 +93,8 @@ class XdmfReader {
 
   static bool has_tets(const pugi::xml_node& node) {
     const std::string type = either(node.child("Topology"), "TopologyType", "Type");
-    return std::string_view(node.name()) == "Grid" && (type == "tetrahedron" || type == "mixed");
+    const bool is_known = type == "mixed" || std::ranges::find(kTetKinds, type, &TetKind::name) != kTetKinds.end();
+    return std::string_view(node.name()) == "Grid" && is_known;
   }
 
   static bool is_of_cells(const pugi::xml_node& attribute) {
@@ -107,10 +123,14 @@ class XdmfReader {
   void read_topology(const pugi::xml_node& topology, CellArrays& cells) {
     const std::vector<std::int64_t> numbers = integers(item_of(topology));
     cells.offsets = {0};
-    if (either(topology, "TopologyType", "Type") == "mixed") return read_mixed(numbers, cells);
-    if (numbers.size() % 4 != 0) fail("its tetrahedra have " + number_text(numbers.size()) + " corners");
-    for (std::size_t end = 4; end <= numbers.size(); end += 4) cells.offsets.push_back(static_cast<std::int64_t>(end));
-    cells.types.assign(numbers.size() / 4, kVtkTetrahedron);
+    const std::string type = either(topology, "TopologyType", "Type");
+    if (type == "mixed") return read_mixed(numbers, cells);
+    const TetKind& kind = *std::ranges::find(kTetKinds, type, &TetKind::name);  // see has_tets()
+    if (numbers.size() % kind.nodes != 0) fail("its tetrahedra have " + number_text(numbers.size()) + " nodes");
+    for (std::size_t end = kind.nodes; end <= numbers.size(); end += kind.nodes) {
+      cells.offsets.push_back(static_cast<std::int64_t>(end));
+    }
+    cells.types.assign(numbers.size() / kind.nodes, kind.vtk_type);
     cells.corners = numbers;
   }
 
@@ -125,7 +145,7 @@ class XdmfReader {
       const auto begin = numbers.begin() + static_cast<std::ptrdiff_t>(at);
       cells.corners.insert(cells.corners.end(), begin, begin + static_cast<std::ptrdiff_t>(corners));
       cells.offsets.push_back(static_cast<std::int64_t>(cells.corners.size()));
-      cells.types.push_back(code == kTetrahedronCode ? kVtkTetrahedron : kVtkOther);
+      cells.types.push_back(vtk_type_of(code));
       at += corners;
     }
   }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/sort_and_unify.h"
+#include "io/element_nodes.h"
 #include "io/interface_names.h"
 #include "io/set_names.h"
 
@@ -13,9 +14,17 @@ namespace {
 
 constexpr std::size_t kMostNameBytes = 100;  // file systems allow 255 for all of a file's name
 
+/// A face of a quadratic tetrahedron becomes four.
+void add_triangles(const TetMesh& mesh, TetFace face, SurfacePart& part) {
+  const auto [a, b, c] = corners_of(mesh, face);
+  if (!is_quadratic(mesh)) return part.triangles.push_back({a, b, c});
+  const auto [ab, bc, ca] = edge_nodes_of(mesh, face);
+  part.triangles.insert(part.triangles.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
+}
+
 SurfacePart part_of(const TetMesh& mesh, const Interface& interface) {
   SurfacePart part{interface.inside, interface.outside, {}, {}};
-  for (const TetFace face : interface.faces) part.triangles.push_back(corners_of(mesh, face));
+  for (const TetFace face : interface.faces) add_triangles(mesh, face, part);
   return part;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "anatomesh/errors.h"
+#include "io/element_nodes.h"
 #include "io/label_comment.h"
 #include "io/label_values.h"
 #include "io/number_text.h"
@@ -23,6 +24,8 @@ namespace anatomesh {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr EdgeNodeOrder kTetgenOrder = {5, 3, 0, 1, 4, 2};
 
 /// Both files, whichever was named. The extension that was named keeps its spelling; the other one is in small letters,
 /// or in capitals if that is what the first one is in.
@@ -54,10 +57,10 @@ std::string element_text(const TetMesh& mesh) {
   for (const LabelComment& comment : label_comments(mesh, set_names(mesh, {.identifier = true}))) {
     out << "# " << text_of(comment) << '\n';
   }
-  out << mesh.tets.size() << " 4 1\n";
+  out << mesh.tets.size() << (is_quadratic(mesh) ? " 10 1\n" : " 4 1\n");
   for (std::size_t n = 0; n < mesh.tets.size(); ++n) {
     out << n + 1;
-    for (const VertexId vertex : mesh.tets[n]) out << ' ' << std::uint64_t{vertex} + 1;
+    for (const VertexId vertex : nodes_of_tet(mesh, n, kTetgenOrder)) out << ' ' << std::uint64_t{vertex} + 1;
     out << ' ' << mesh.labels[n] << '\n';
   }
   return out.bytes();
@@ -116,32 +119,30 @@ std::vector<NumberedPoint> read_points(const fs::path& path) {
   return points;
 }
 
-Label label_from(const WordLines& line, bool has_attribute) {
-  if (!has_attribute) return 1;
-  const auto value = line.number<double>(5);
+/// In the first word behind the nodes.
+Label label_from(const WordLines& line, std::size_t word) {
+  const auto value = line.number<double>(word);
   if (is_label(value)) return static_cast<Label>(value);
   throw InvalidInput("tetrahedron " + number_text(line.number<std::int64_t>(0)) + " of " + in_quotes(line.path()) +
                      " has the region attribute " + number_text(value) + "; " + kLabelRule);
 }
 
-std::vector<NumberedTet> read_tets(WordLines& lines) {
+void read_tets(WordLines& lines, NumberedMesh& mesh) {
   lines.next(1);
   const auto count = lines.number<std::uint32_t>(0);
-  const auto corners = lines.size() > 1 ? lines.number<std::uint32_t>(1) : 4;
+  const std::size_t nodes_each = lines.size() > 1 ? lines.number<std::uint32_t>(1) : 4;
   const bool has_attribute = lines.size() > 2 && lines.number<std::uint32_t>(2) > 0;
-  if (corners != 4) {
-    throw InvalidInput(in_quotes(lines.path()) + " has tetrahedra of " + number_text(corners) +
-                       " corners; 4 are needed");
+  if (nodes_each != 4 && nodes_each != 10) {
+    throw InvalidInput(in_quotes(lines.path()) + " has tetrahedra of " + number_text(nodes_each) +
+                       " nodes; 4 or 10 are needed");
   }
-  std::vector<NumberedTet> tets;
-  while (tets.size() < count) {
-    lines.next(has_attribute ? 6 : 5);
-    NumberedTet& tet = tets.emplace_back();
-    tet.number = lines.number<std::int64_t>(0);
-    for (std::size_t n = 0; n < 4; ++n) tet.corners[n] = lines.number<std::int64_t>(n + 1);
-    tet.label = label_from(lines, has_attribute);
+  std::vector<std::int64_t> nodes(nodes_each);
+  while (mesh.tets.size() < count) {
+    lines.next(nodes_each + (has_attribute ? 2 : 1));
+    for (std::size_t n = 0; n < nodes_each; ++n) nodes[n] = lines.number<std::int64_t>(n + 1);
+    const Label label = has_attribute ? label_from(lines, nodes_each + 1) : 1;
+    mesh.add(lines.number<std::int64_t>(0), nodes, label, kTetgenOrder);
   }
-  return tets;
 }
 
 }  // namespace
@@ -159,7 +160,7 @@ TetMesh read_tetgen(const fs::path& path) {
   }
   WordLines lines(pair.elements);
   NumberedMesh numbered;
-  numbered.tets = read_tets(lines);
+  read_tets(lines, numbered);
   numbered.points = read_points(pair.nodes);
   TetMesh mesh = tet_mesh_from(path, std::move(numbered));
   mesh.names = std::move(lines.names());

@@ -16,6 +16,7 @@
 #include <string>
 
 #include "anatomesh/errors.h"
+#include "io/element_nodes.h"
 #include "io/legacy_vtk.h"
 #include "io/output_file.h"
 #include "io/vtk_session.h"
@@ -30,13 +31,14 @@ template <typename IdArray>
 vtkSmartPointer<vtkCellArray> vtk_cells(const TetMesh& mesh) {
   using Id = typename IdArray::ValueType;
   vtkNew<IdArray> offsets, connectivity;
+  const std::size_t nodes = nodes_per_tet(mesh);
   offsets->SetNumberOfValues(static_cast<vtkIdType>(mesh.tets.size()) + 1);
-  connectivity->SetNumberOfValues(4 * static_cast<vtkIdType>(mesh.tets.size()));
+  connectivity->SetNumberOfValues(static_cast<vtkIdType>(nodes * mesh.tets.size()));
   Id* offset = offsets->GetPointer(0);
-  for (std::size_t n = 0; n <= mesh.tets.size(); ++n) *offset++ = 4 * static_cast<Id>(n);
-  Id* corner = connectivity->GetPointer(0);
-  for (const auto& tet : mesh.tets) {
-    for (const VertexId vertex : tet) *corner++ = static_cast<Id>(vertex);
+  for (std::size_t n = 0; n <= mesh.tets.size(); ++n) *offset++ = static_cast<Id>(nodes * n);
+  Id* node = connectivity->GetPointer(0);
+  for (std::size_t n = 0; n < mesh.tets.size(); ++n) {
+    for (const VertexId vertex : nodes_of_tet(mesh, n)) *node++ = static_cast<Id>(vertex);
   }
   auto cells = vtkSmartPointer<vtkCellArray>::New();
   cells->SetData(offsets, connectivity);
@@ -47,8 +49,9 @@ vtkSmartPointer<vtkUnstructuredGrid> vtk_grid(const TetMesh& mesh) {
   auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
   grid->SetPoints(vtk_points(mesh.points_mm));
   constexpr std::size_t kMost32 = std::numeric_limits<vtkTypeInt32>::max();
-  const bool fits_32 = 4 * mesh.tets.size() <= kMost32 && mesh.points_mm.size() <= kMost32;
-  grid->SetCells(VTK_TETRA, fits_32 ? vtk_cells<vtkTypeInt32Array>(mesh) : vtk_cells<vtkTypeInt64Array>(mesh));
+  const bool fits_32 = nodes_per_tet(mesh) * mesh.tets.size() <= kMost32 && mesh.points_mm.size() <= kMost32;
+  grid->SetCells(is_quadratic(mesh) ? VTK_QUADRATIC_TETRA : VTK_TETRA,
+                 fits_32 ? vtk_cells<vtkTypeInt32Array>(mesh) : vtk_cells<vtkTypeInt64Array>(mesh));
   vtkNew<vtkUnsignedIntArray> labels;
   labels->SetName("label");
   labels->SetNumberOfValues(static_cast<vtkIdType>(mesh.labels.size()));

@@ -1,6 +1,5 @@
 // After "XDMF Model and Format" (https://www.xdmf.org/index.php/XDMF_Model_and_Format), version 3.
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <map>
 #include <pugixml.hpp>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "anatomesh/interfaces.h"
+#include "io/element_nodes.h"
 #include "io/hdf5_file.h"
 #include "io/interface_names.h"
 #include "io/label_colour.h"
@@ -38,22 +38,26 @@ std::string shape_text(const Table& table) {
   return text;
 }
 
-/// A kind of cells and their corners, as 32-bit numbers where they fit.
-template <std::size_t kCorners>
+/// Nodes of a kind of cells, as 32-bit numbers where they fit.
 class Cells {
  public:
-  Cells(const std::vector<std::array<VertexId, kCorners>>& cells, std::size_t point_count) {
-    if (point_count > std::numeric_limits<std::int32_t>::max()) {
-      for (const auto& cell : cells) wide_.insert(wide_.end(), cell.begin(), cell.end());
-      table_ = {NumberType::i64, wide_.data(), cells.size(), kCorners};
-    } else {
-      table_ = {NumberType::i32, cells.data(), cells.size(), kCorners};
+  /// nodes_of(n): those of cell n.
+  template <typename NodesOf>
+  Cells(std::size_t count, std::size_t nodes_each, std::size_t point_count, const NodesOf& nodes_of) {
+    const bool is_wide = point_count > std::numeric_limits<std::int32_t>::max();
+    is_wide ? wide_.reserve(count * nodes_each) : narrow_.reserve(count * nodes_each);
+    for (std::size_t n = 0; n < count; ++n) {
+      for (const VertexId node : nodes_of(n))
+        is_wide ? wide_.push_back(node) : narrow_.push_back(static_cast<std::int32_t>(node));
     }
+    table_ = is_wide ? Table{NumberType::i64, wide_.data(), count, nodes_each}
+                     : Table{NumberType::i32, narrow_.data(), count, nodes_each};
   }
   const Table& table() const { return table_; }
 
  private:
   std::vector<std::int64_t> wide_;
+  std::vector<std::int32_t> narrow_;
   Table table_;
 };
 
@@ -174,9 +178,10 @@ Table points_of(const TetMesh& mesh) {
 }
 
 void add_tets(GridFiles& to, const TetMesh& mesh) {
-  const Cells<4> corners(mesh.tets, mesh.points_mm.size());
+  const Cells cells(mesh.tets.size(), nodes_per_tet(mesh), mesh.points_mm.size(),
+                    [&](std::size_t n) { return nodes_of_tet(mesh, n); });
   to.set_geometry(kPoints, points_of(mesh));
-  to.set_topology("Tetrahedron", "/mesh/tetrahedra", corners.table());
+  to.set_topology(is_quadratic(mesh) ? "Tetrahedron_10" : "Tetrahedron", "/mesh/tetrahedra", cells.table());
   to.add_cell_attribute("label", "/mesh/label", list_of(mesh.labels));
   add_label_table(to, mesh.names);
 }
@@ -185,17 +190,17 @@ void add_tets(GridFiles& to, const TetMesh& mesh) {
 
 /// The faces of all interfaces; one value a face.
 struct Facets {
-  std::vector<std::array<VertexId, 3>> corners;
+  std::vector<TetFace> faces;
   std::vector<std::uint32_t> interface, inside, outside;
 };
 
-Facets facets_of(const TetMesh& mesh, const std::vector<Interface>& interfaces) {
+Facets facets_of(const std::vector<Interface>& interfaces) {
   Facets facets;
   for (std::size_t n = 0; n < interfaces.size(); ++n) {
-    for (const TetFace face : interfaces[n].faces) facets.corners.push_back(corners_of(mesh, face));
-    facets.interface.resize(facets.corners.size(), static_cast<std::uint32_t>(n + 1));
-    facets.inside.resize(facets.corners.size(), interfaces[n].inside);
-    facets.outside.resize(facets.corners.size(), interfaces[n].outside);
+    facets.faces.insert(facets.faces.end(), interfaces[n].faces.begin(), interfaces[n].faces.end());
+    facets.interface.resize(facets.faces.size(), static_cast<std::uint32_t>(n + 1));
+    facets.inside.resize(facets.faces.size(), interfaces[n].inside);
+    facets.outside.resize(facets.faces.size(), interfaces[n].outside);
   }
   return facets;
 }
@@ -221,10 +226,11 @@ void add_interface_table(GridFiles& to, const TetMesh& mesh, const std::vector<I
 
 void add_facets(GridFiles& to, const TetMesh& mesh, const GridFiles& points) {
   const std::vector<Interface> interfaces = interfaces_of(mesh);
-  const Facets facets = facets_of(mesh, interfaces);
-  const Cells<3> corners(facets.corners, mesh.points_mm.size());
+  const Facets facets = facets_of(interfaces);
+  const Cells cells(facets.faces.size(), is_quadratic(mesh) ? 6 : 3, mesh.points_mm.size(),
+                    [&](std::size_t n) { return nodes_of_face(mesh, facets.faces[n]); });
   to.set_geometry(kPoints, points_of(mesh), &points);
-  to.set_topology("Triangle", "/facets/triangles", corners.table());
+  to.set_topology(is_quadratic(mesh) ? "Triangle_6" : "Triangle", "/facets/triangles", cells.table());
   to.add_cell_attribute("interface", "/facets/interface", list_of(facets.interface));
   to.add_cell_attribute("label", "/facets/label", list_of(facets.inside));
   to.add_cell_attribute("label_outside", "/facets/label_outside", list_of(facets.outside));

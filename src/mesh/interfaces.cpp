@@ -14,6 +14,9 @@ namespace {
 // The corners of each face, so that its normal points away from the fourth corner.
 constexpr std::array<std::array<std::uint8_t, 3>, 4> kFaceCorners = {{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
 
+// The edge nodes of each face, in the same order.
+constexpr std::array<std::array<std::uint8_t, 3>, 4> kFaceEdgeNodes = {{{1, 5, 4}, {3, 5, 2}, {0, 4, 3}, {2, 1, 0}}};
+
 struct KeyedFace {
   std::array<VertexId, 3> key;  // ascending
   TetFace face;
@@ -40,6 +43,12 @@ std::array<VertexId, 3> corners_of(const TetMesh& mesh, TetFace face) {
   const auto& tet = mesh.tets[face.tet];
   const auto& corners = kFaceCorners[face.opposite];
   return {tet[corners[0]], tet[corners[1]], tet[corners[2]]};
+}
+
+std::array<VertexId, 3> edge_nodes_of(const TetMesh& mesh, TetFace face) {
+  const auto& nodes = mesh.edge_nodes[face.tet];
+  const auto& edges = kFaceEdgeNodes[face.opposite];
+  return {nodes[edges[0]], nodes[edges[1]], nodes[edges[2]]};
 }
 
 std::vector<Interface> interfaces_of(const TetMesh& mesh) {

@@ -71,6 +71,7 @@ void check_options(const Options& o) {
       {"min_dihedral_deg", d.min_dihedral_deg, 0, 30, true, true},
       {"max_dihedral_deg", d.max_dihedral_deg, 117, 180, true, true},
       {"min_mean_ratio", d.min_mean_ratio, 0, 0.5, true, true},
+      {"order", static_cast<double>(o.order), 1, 2, true, true},
       {"threads", static_cast<double>(o.threads), 0, 4096, true, true},
       {"max_memory_gib", o.max_memory_gib, 0, kInfinity, true, false},
       {"default_material young_modulus_pa", d.default_material.young_modulus_pa, 0, kInfinity, false, false},

@@ -110,7 +110,7 @@ Meshing mesh_image(const LabelImage& image, const Options& options, bool keeps_b
 
   const Stage finishing(progress, "finish", 0.95, 1.0);
   describe_result(made, plan.fidelity);
-  result.mesh = in_physical_space(made.deformed.mesh, tissues, image, options.frame);
+  result.mesh = finished_mesh(made.deformed.mesh, tissues, image, options);
   if (result.mesh.tets.empty()) throw MeshingFailed("no tissue could be represented; take a smaller bcc_size");
   watch.stage_done("finish");
   finishing.at(1);

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "anatomesh/quadratic.h"
 #include "base/rotation.h"
 #include "base/vec.h"
 
@@ -29,8 +30,6 @@ struct ToPhysical {
   Vec3 operator()(Vec3 p) const { return origin_mm + rotation * p; }
   bool mirrors() const { return determinant(rotation) < 0; }
 };
-
-}  // namespace
 
 TetMesh in_physical_space(const TissueMesh& mesh, const TissueImage& tissues, const LabelImage& image, Frame frame) {
   const ToPhysical to_physical(image, frame);
@@ -57,6 +56,15 @@ TetMesh in_physical_space(const TissueMesh& mesh, const TissueImage& tissues, co
     if (label != 0 && entry != image.names.end()) result.names.insert(*entry);
   }
   return result;
+}
+
+}  // namespace
+
+TetMesh finished_mesh(const TissueMesh& mesh, const TissueImage& tissues, const LabelImage& image,
+                      const Options& options) {
+  TetMesh linear = in_physical_space(mesh, tissues, image, options.frame);
+  if (options.order == 1) return linear;
+  return quadratic_mesh(linear, {options.deform.min_dihedral_deg, options.deform.max_dihedral_deg});
 }
 
 std::vector<TissueOutcome> describe_tissues(const TissueImage& image, std::span<const double> wanted,

@@ -13,9 +13,10 @@
 
 namespace anatomesh {
 
-/// The mesh without its background, in the space of the image; tissue numbers become labels. Of `image` only the
-/// origin and the direction count.
-TetMesh in_physical_space(const TissueMesh& mesh, const TissueImage& tissues, const LabelImage& image, Frame frame);
+/// The mesh without its background, in the space and of the order asked for; tissue numbers become labels. Of `image`
+/// only the origin and the direction count.
+TetMesh finished_mesh(const TissueMesh& mesh, const TissueImage& tissues, const LabelImage& image,
+                      const Options& options);
 
 /// wanted, lattice, final: F asked for and reached, by tissue.
 std::vector<TissueOutcome> describe_tissues(const TissueImage& image, std::span<const double> wanted,

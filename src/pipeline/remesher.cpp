@@ -229,7 +229,7 @@ void Remesher::Impl::take(TissueImage image, const std::vector<Label>& numbered,
     image.labels = labels;
   }
   image_ = std::move(image);
-  result_.mesh = in_physical_space(kept_.mesh, image_, grid_, options_.frame);
+  result_.mesh = finished_mesh(kept_.mesh, image_, grid_, options_);
   result_.tissues = describe_tissues(image_, wanted_fidelity(options_.lattice, labels),
                                      std::vector<Fidelity>(labels.size()), kept_.inside, kept_.mesh);
   for (TissueOutcome& tissue : result_.tissues) {

@@ -74,8 +74,8 @@ TEST_F(AbaqusMesh, WhatCannotBeReadIsNamed) {
   EXPECT_SAYS(refused<InvalidInput>("mesh.inp", "*NODE, INPUT=nodes.inp\n"), "another file");
   EXPECT_SAYS(refused<InvalidInput>("mesh.inp", "*NODE, SYSTEM=C\n"), "coordinate system");
   EXPECT_SAYS(refused<InvalidInput>("mesh.inp", "*Instance, name=a, part=b\n1., 0., 0.\n"), "moves");
-  EXPECT_SAYS(refused<InvalidInput>("mesh.inp", "*NODE\n1, 0, 0, 0\n"), "no linear tetrahedra");
-  EXPECT_SAYS(refused<InvalidInput>("mesh.inp", "*ELEMENT, TYPE=C3D10M\n1, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10\n"), "C3D10M");
+  EXPECT_SAYS(refused<InvalidInput>("mesh.inp", "*NODE\n1, 0, 0, 0\n"), "no tetrahedra of 4 or 10 nodes");
+  EXPECT_SAYS(refused<InvalidInput>("mesh.inp", "*ELEMENT, TYPE=C3D20\n1, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10\n"), "C3D20");
 }
 
 TEST_F(AbaqusMesh, DamageIsNamed) {

@@ -43,9 +43,9 @@ TEST_F(FebioMesh, OfOtherTools) {
 
 TEST_F(FebioMesh, WhatCannotBeReadIsNamed) {
   EXPECT_SAYS(refused<InvalidInput>("mesh.feb", "<febio_spec><Mesh from='other.feb'/></febio_spec>"), "other.feb");
-  EXPECT_SAYS(refused<InvalidInput>("mesh.feb", model(kNodes)), "no linear tetrahedra");
-  EXPECT_SAYS(refused<InvalidInput>("mesh.feb", model(kNodes + part("a", "<elem id='1'>1,2</elem>", "tet10"))),
-              "no linear tetrahedra");
+  EXPECT_SAYS(refused<InvalidInput>("mesh.feb", model(kNodes)), "no tetrahedra of 4 or 10 nodes");
+  EXPECT_SAYS(refused<InvalidInput>("mesh.feb", model(kNodes + part("a", "<elem id='1'>1,2</elem>", "tet15"))),
+              "no tetrahedra of 4 or 10 nodes");
   const std::string mesh = kNodes + part("new", "<elem id='9'>3,4,5,6</elem>");
   EXPECT_SAYS(refused<InvalidInput>("mesh.feb", model(mesh, "Mesh", "<!--label 3 is old-->")), "the part 'new'");
 }

@@ -88,7 +88,7 @@ TEST_F(GmshFile, UnusableFilesAreRefused) {
   EXPECT_SAYS(refused<IoError>(kStart41 + "$Elements\n1 1 1 1\n3 1 4 1\n1 1 2 3 4\n$EndElements\n"), "point 1");
   EXPECT_SAYS(refused<IoError>(kStart41 + "$Foo\nbar\n"), "$Foo");
   EXPECT_SAYS(refused<InvalidInput>(kStart41 + "$Elements\n1 1 1 1\n3 -5 4 1\n1 1 2 3 4\n$EndElements\n"), "group -5");
-  EXPECT_SAYS(refused<InvalidInput>(kStart41 + "$Elements\n0 0 0 0\n$EndElements\n"), "no linear tetrahedra");
+  EXPECT_SAYS(refused<InvalidInput>(kStart41 + "$Elements\n0 0 0 0\n$EndElements\n"), "no tetrahedra of 4 or 10 nodes");
 }
 
 }  // namespace

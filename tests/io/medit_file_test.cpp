@@ -42,7 +42,7 @@ TEST_F(MeditFile, UnusableFilesAreRefused) {
   EXPECT_SAYS(refused<IoError>(start + "Vertices 1\n0 0 0 0\n"), "no End");
   EXPECT_SAYS(refused<IoError>(start + "Vertices 1\n0 0 0 0\nTetrahedra 1\n1 1 1 2 0\nEnd\n"), "point 2");
   EXPECT_SAYS(refused<InvalidInput>(start + "Tetrahedra 1\n1 1 1 1 -3\nEnd\n"), "reference -3");
-  EXPECT_SAYS(refused<InvalidInput>(start + "Vertices 1\n0 0 0 0\nEnd\n"), "no linear tetrahedra");
+  EXPECT_SAYS(refused<InvalidInput>(start + "Vertices 1\n0 0 0 0\nEnd\n"), "no tetrahedra of 4 or 10 nodes");
   EXPECT_SAYS(refused<IoError>(start + "7 8 9\nEnd\n"), "where a section should begin");
 }
 

@@ -7,6 +7,7 @@ void expect_same(const TetMesh& actual, const TetMesh& expected) {
   EXPECT_EQ(actual.tets, expected.tets);
   EXPECT_EQ(actual.labels, expected.labels);
   EXPECT_EQ(actual.names, expected.names);
+  EXPECT_EQ(actual.edge_nodes, expected.edge_nodes);
 }
 
 std::string with_changed_bytes(std::string bytes, int count, std::mt19937& random) {
@@ -20,6 +21,10 @@ std::string message_of_damaged(const std::filesystem::path& file) {
     EXPECT_EQ(mesh.labels.size(), mesh.tets.size());
     for (const auto& tet : mesh.tets) {
       for (const VertexId vertex : tet) EXPECT_LT(vertex, mesh.points_mm.size());
+    }
+    EXPECT_TRUE(mesh.edge_nodes.empty() || mesh.edge_nodes.size() == mesh.tets.size());
+    for (const auto& nodes : mesh.edge_nodes) {
+      for (const VertexId vertex : nodes) EXPECT_LT(vertex, mesh.points_mm.size());
     }
     return "";
   } catch (const Error& error) {

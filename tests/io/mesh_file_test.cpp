@@ -207,7 +207,7 @@ TEST_F(MeshFile, UnusableFilesAreRefused) {
 TEST_F(MeshFile, MeshWithoutTetrahedraIsRefused) {
   std::string triangles = vtu_text("");
   triangles.replace(triangles.find("10 5"), 4, "9 5 ");
-  EXPECT_SAYS(refused<InvalidInput>("mesh.vtu", triangles), "no linear tetrahedra");
+  EXPECT_SAYS(refused<InvalidInput>("mesh.vtu", triangles), "no tetrahedra of 4 or 10 nodes");
 }
 
 TEST_F(MeshFile, TruncatedFilesAreRefused) {

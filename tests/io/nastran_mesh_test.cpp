@@ -66,7 +66,6 @@ TEST_F(NastranMesh, OfOtherTools) {
       "CTRIA3,1,1,11,12,13\n"
       "CTETRA* 8               5               11              12\n*       13              14\n"
       "CTETRA,7,+6,11,13,12,14\n"
-      "CTETRA         9       4      11      13      12      14       1       2+\n+              3\n"
       "ENDDATA\nnothing of this is read";
   const TetMesh mesh = mesh_in("mesh.bdf", text);
   EXPECT_EQ(mesh.points_mm, (std::vector<Vec3>{{1.5, 0.25, -5}, {1, 2, 3}, {1, 2, 4}, {1, 2, -2.5}}));
@@ -83,8 +82,8 @@ TEST_F(NastranMesh, WhatCannotBeReadIsNamed) {
   EXPECT_SAYS(refused<InvalidInput>("mesh.bdf", "BEGIN BULK\nINCLUDE 'nodes.bdf'\nENDDATA\n"), "another file");
   EXPECT_SAYS(refused<InvalidInput>("mesh.bdf", "GRID,1,5,0.,0.,0.\n"), "coordinate system 5");
   EXPECT_SAYS(refused<InvalidInput>("mesh.bdf", "GRDSET,,7\n"), "coordinate system 7");
-  EXPECT_SAYS(refused<InvalidInput>("mesh.bdf", "GRID,1,,0.,0.,0.\n"), "no linear tetrahedra");
-  EXPECT_SAYS(refused<InvalidInput>("mesh.bdf", "CTETRA,1,1,1,2,3,4,5,6\n+,7,8,9,10\n"), "more than four corners");
+  EXPECT_SAYS(refused<InvalidInput>("mesh.bdf", "GRID,1,,0.,0.,0.\n"), "no tetrahedra of 4 or 10 nodes");
+  EXPECT_SAYS(refused<InvalidInput>("mesh.bdf", "CTETRA,1,1,1,2,3,4,5,6\n+,7\n"), "3 edge nodes of tetrahedron 1");
   EXPECT_SAYS(refused<InvalidInput>("mesh.bdf", "CTETRA,1,-1,1,2,3,4\n"), "property -1");
 }
 

@@ -44,10 +44,10 @@ TEST_F(TetGenMesh, TheOtherFileMustBeThere) {
 
 TEST_F(TetGenMesh, WhatCannotBeReadIsNamed) {
   put("mesh.node", kNodes);
-  EXPECT_SAYS(refused<InvalidInput>("mesh.ele", "1 10 0\n0 0 1 2 3 4 5 6 7 8 9\n"), "tetrahedra of 10 corners");
+  EXPECT_SAYS(refused<InvalidInput>("mesh.ele", "1 9 0\n0 0 1 2 3 4 5 6 7 8\n"), "tetrahedra of 9 nodes");
   EXPECT_SAYS(refused<InvalidInput>("mesh.ele", "1 4 1\n0 0 1 2 3 -1\n"), "region attribute -1");
   EXPECT_SAYS(refused<InvalidInput>("mesh.ele", "1 4 1\n0 0 1 2 3 1.5\n"), "region attribute 1.5");
-  EXPECT_SAYS(refused<InvalidInput>("mesh.ele", "0 4 1\n"), "no linear tetrahedra");
+  EXPECT_SAYS(refused<InvalidInput>("mesh.ele", "0 4 1\n"), "no tetrahedra of 4 or 10 nodes");
   put("flat.ele", "1 4 0\n0 0 1 2 3\n");
   EXPECT_SAYS(refused<InvalidInput>("flat.node", "1 2 0 0\n0 0 0\n"), "points of 2 dimensions");
 }

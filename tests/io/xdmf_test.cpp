@@ -49,7 +49,7 @@ TEST_F(Xdmf, FourFilesThatBelongTogether) {
   EXPECT_SAYS(facets, "brain_facets.h5:/facets/interface");
   EXPECT_SAYS(
       message_of<InvalidInput>(in_folder("brain_facets.xdmf"), [&] { read_mesh(in_folder("brain_facets.xdmf")); }),
-      "no linear tetrahedra");
+      "no tetrahedra of 4 or 10 nodes");
 }
 
 TEST_F(Xdmf, HdfFilesAreDeterministic) {
@@ -113,14 +113,14 @@ TEST_F(Xdmf, DamagedTextIsRefused) {
                                    {topology("1 4", "0 1 2"), "fewer numbers"},
                                    {topology("1 4", "0 1 2 3 0"), "5 numbers, not 4"},
                                    {topology("1 4", "0 1 2 x"), "'x'"},
-                                   {topology("1 3", "0 1 2"), "3 corners"},
+                                   {topology("1 3", "0 1 2"), "3 nodes"},
                                    {topology("99999999 99999999", "0 1 2 3"), "dimensions"},
                                    {topology("10000000 4", "0 1 2 3"), "fewer numbers"},
                                    {topology("", "0 1 2 3"), "no dimensions"},
                                    {file(grid(kPoints + "<Topology Type=\"Tetrahedron\"/>")), "no DataItem"},
                                    {file(grid(kOneTet)), "no DataItem"}};
   for (const Case& c : cases) EXPECT_SAYS(refused<IoError>(c.text), c.says);
-  EXPECT_SAYS(refused<InvalidInput>(file(grid(kPoints))), "no linear tetrahedra");
+  EXPECT_SAYS(refused<InvalidInput>(file(grid(kPoints))), "no tetrahedra of 4 or 10 nodes");
   EXPECT_SAYS(refused<InvalidInput>(file(grid(kPoints + kOneTet + cell_attribute("label", "Float", "1.5")))), "1.5");
 }
 
