@@ -1,8 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "anatomesh/assess.h"
+#include "anatomesh/errors.h"
+#include "anatomesh/quadratic.h"
+#include "base/vec.h"
 #include "support/test_images.h"
 #include "support/test_meshes.h"
 #include "voxel_mesh.h"
@@ -34,6 +38,32 @@ TEST(Conformity, EveryShapeAsVoxelsIsConforming) {
     EXPECT_EQ(c.voxel_centres_in_several_tets, 0u) << name;
     EXPECT_FALSE(c.negative_orientation) << name;
   }
+}
+
+TEST(Curves, FoldedTetrahedraBreakAGuarantee) {
+  TetMesh mesh = quadratic_mesh(testing::two_tets(1, 2));
+  EXPECT_EQ(failed_guarantees(assess(mesh), {.min_mean_ratio = 0}), std::vector<std::string>());
+  EXPECT_EQ(assess(mesh).curves.curved_tets, 0u);
+  EXPECT_NEAR(assess(mesh).curves.min_jacobian, 1, 1e-12);
+  const auto& shared = mesh.edge_nodes[0];
+  const VertexId node = *std::ranges::find_if(mesh.edge_nodes[1],
+                                              [&](VertexId v) { return std::ranges::find(shared, v) == shared.end(); });
+  mesh.points_mm[node] = mesh.points_mm[node] + Vec3{0.1, 0.1, 0.1};
+  EXPECT_EQ(assess(mesh).curves.curved_tets, 1u);
+  mesh.points_mm[node] = {-3, -3, -3};
+  const Assessment folded = assess(mesh);
+  EXPECT_EQ(folded.curves.folded, 1u);
+  EXPECT_LT(folded.curves.min_jacobian, 0);
+  EXPECT_NE(failed_guarantees(folded).front().find("1 curved tetrahedron may be folded"), std::string::npos);
+}
+
+TEST(Curves, EdgeNodesThatDoNotFitAreRefused) {
+  TetMesh mesh = quadratic_mesh(testing::two_tets(1, 2));
+  mesh.edge_nodes.pop_back();
+  EXPECT_THROW(assess(mesh), InvalidInput);
+  mesh = quadratic_mesh(testing::two_tets(1, 2));
+  mesh.edge_nodes[0][3] = 99;
+  EXPECT_THROW(assess(mesh), InvalidInput);
 }
 
 TEST(Conformity, FaceInThreeTetrahedra) {

@@ -5,7 +5,10 @@
 
 #include <cmath>
 #include <string>
+#include <vector>
 
+#include "anatomesh/assess.h"
+#include "anatomesh/quadratic.h"
 #include "support/test_images.h"
 
 namespace anatomesh {
@@ -40,6 +43,21 @@ TEST_P(Guarantees, HoldOnTheLattice) {
   Options options;
   options.deform.iterations = 0;
   testing::expect_guarantees(image(), image_to_mesh(image(), options));
+}
+
+TEST_P(Guarantees, HoldForQuadraticTetrahedra) {
+  Options options;
+  options.order = 2;
+  options.deform.iterations = 2;
+  const Result result = image_to_mesh(image(), options);
+  const Assessment found = assess(result.mesh, &image(), {.distances = false});
+  EXPECT_EQ(failed_guarantees(found), std::vector<std::string>());
+  EXPECT_EQ(found.curves.tets, result.mesh.tets.size());
+  EXPECT_GE(found.curves.min_jacobian, 0.3);
+  options.order = 1;
+  const TetMesh corners = linear_mesh(result.mesh), linear = image_to_mesh(image(), options).mesh;
+  EXPECT_EQ(corners.points_mm, linear.points_mm);
+  EXPECT_EQ(corners.tets, linear.tets);
 }
 
 std::vector<LabelImage> a_few_images() {

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Mapping, Optional
+from typing import TYPE_CHECKING, Any, Literal, Mapping, Optional
 
 import numpy as np
 import numpy.typing as npt
@@ -47,7 +47,7 @@ class Interface:
 class Mesh:
     """A conforming tetrahedral mesh.
 
-    `points`, `tets` and `labels` are read-only views of the mesh itself, which they keep alive; nothing is copied.
+    `points`, `tets`, `labels` and `edge_nodes` are read-only views of the mesh itself, which they keep alive; nothing is copied.
     Every tetrahedron (a, b, c, d) of a mesh made by this package has a positive volume, (b-a) x (c-a) . (d-a) / 6.
     """
 
@@ -67,12 +67,17 @@ class Mesh:
         labels: Optional[npt.ArrayLike] = None,
         names: Optional[Mapping[int, str]] = None,
         colours: Optional[Mapping[int, Colour]] = None,
+        edge_nodes: Optional[npt.ArrayLike] = None,
     ) -> None:
-        """A mesh of arrays, which are copied: (n, 3) points in mm, (m, 4) vertices, (m,) labels (all 1 without)."""
+        """A mesh of arrays, which are copied: (n, 3) points in mm, (m, 4) vertices, (m,) labels (all 1 without).
+
+        Quadratic tetrahedra also have (m, 6) edge_nodes.
+        """
         tets = _whole_numbers("tets", tets)
         labels = np.ones(len(tets), np.uint32) if labels is None else _whole_numbers("labels", labels)
         table = plain_names(names), plain_colours(colours)
-        self._mesh = _core.TetMesh(np.asarray(points, np.float64), tets, labels, *table)
+        nodes = np.zeros((0, 6), np.uint32) if edge_nodes is None else _whole_numbers("edge_nodes", edge_nodes)
+        self._mesh = _core.TetMesh(np.asarray(points, np.float64), tets, labels, nodes, *table)
         self._describe({})
 
     @classmethod
@@ -102,6 +107,32 @@ class Mesh:
     def labels(self) -> npt.NDArray[np.uint32]:
         """(m,) uint32: the tissue of each tetrahedron."""
         return self._mesh.labels
+
+    @property
+    def edge_nodes(self) -> npt.NDArray[np.uint32]:
+        """(m, 6) uint32: points on the edges (0,1) (1,2) (2,0) (0,3) (1,3) (2,3) of quadratic tetrahedra, else (0, 6)."""
+        return self._mesh.edge_nodes
+
+    @property
+    def order(self) -> int:
+        """1: linear tetrahedra, 2: quadratic ones."""
+        return 2 if len(self.edge_nodes) else 1
+
+    @property
+    def cells(self) -> npt.NDArray[np.uint32]:
+        """(m, 4) or (m, 10) uint32: all nodes of each tetrahedron, in the order of VTK."""
+        return np.hstack([self.tets, self.edge_nodes]) if self.order == 2 else self.tets
+
+    def with_order(self, order: Literal[1, 2]) -> Mesh:
+        """A new mesh of linear or quadratic tetrahedra, see the option `order`, within the bounds of this one's."""
+        if order not in (1, 2):
+            raise ValueError(f"order is {order!r}; it must be 1 or 2")
+        options = {**_core.default_options(), **self.options, "order": order}
+        bounds = options["min_dihedral_deg"], options["max_dihedral_deg"]
+        mesh = Mesh._made({"mesh": _core.with_order(self._mesh, order, *bounds)})
+        mesh.tissues, mesh.warnings, mesh.times = self.tissues, self.warnings, self.times
+        mesh.options = {**self.options, "order": order} if self.options else {}
+        return mesh
 
     @property
     def names(self) -> dict[int, str]:
@@ -170,7 +201,7 @@ class Mesh:
 
         return meshio.Mesh(
             self.points,
-            [("tetra", self.tets.astype(np.int64))],  # as meshio's writers expect
+            [("tetra10" if self.order == 2 else "tetra", self.cells.astype(np.int64))],  # as meshio's writers expect
             cell_data={"label": [self.labels]},
             field_data={name: np.array([label, 3]) for label, name in self.names.items()},
         )
@@ -183,7 +214,8 @@ class Mesh:
         import pyvista
         from vtkmodules.vtkCommonCore import vtkStringArray
 
-        grid = pyvista.UnstructuredGrid({pyvista.CellType.TETRA: self.tets.astype(np.int64)}, np.array(self.points))
+        kind = pyvista.CellType.QUADRATIC_TETRA if self.order == 2 else pyvista.CellType.TETRA
+        grid = pyvista.UnstructuredGrid({kind: self.cells.astype(np.int64)}, np.array(self.points))
         grid.cell_data["label"] = np.array(self.labels)
         described = sorted({*self.names, *self.colours})
         if described:
@@ -199,23 +231,26 @@ class Mesh:
 
     @classmethod
     def from_meshio(cls, mesh: Any, label: Optional[str] = None) -> Mesh:
-        """The linear tetrahedra of a meshio.Mesh, in its order and orientation.
+        """The tetrahedra of a meshio.Mesh, all linear or all quadratic, in its order and orientation.
 
         Labels come from the cell data of the name `label`; unless given, of the first of "label", "labels",
         "medit:ref", "gmsh:physical" and "material" that is there; without any, all labels are 1. Names come from
         field_data, as Gmsh has them or, with colours, as our .vtu files do.
         """
-        blocks = [n for n, block in enumerate(mesh.cells) if block.type == "tetra"]
-        if not blocks:
-            raise InvalidInput("the mesh has no cells of type 'tetra'; linear tetrahedra are needed")
-        tets = np.concatenate([mesh.cells[n].data for n in blocks])
+        kinds = {block.type for block in mesh.cells} & {"tetra", "tetra10"}
+        if len(kinds) != 1:
+            found = "both" if kinds else "neither"
+            raise InvalidInput(f"the mesh has {found} of the cells 'tetra' and 'tetra10'; one kind of them is needed")
+        blocks = [n for n, block in enumerate(mesh.cells) if block.type in kinds]
+        cells = np.concatenate([mesh.cells[n].data for n in blocks])
+        tets, nodes = cells[:, :4], cells[:, 4:] if "tetra10" in kinds else None
         name = label or next((known for known in _LABEL_ARRAYS if known in mesh.cell_data), None)
         if name is None:
-            return cls(mesh.points, tets)
+            return cls(mesh.points, tets, edge_nodes=nodes)
         if name not in mesh.cell_data:
             raise InvalidInput(f"the mesh has no cell data '{name}'; it has {sorted(mesh.cell_data)}")
         labels = np.concatenate([mesh.cell_data[name][n] for n in blocks])
-        return cls(mesh.points, tets, labels, *_table_of_meshio(mesh))
+        return cls(mesh.points, tets, labels, *_table_of_meshio(mesh), edge_nodes=nodes)
 
     def __reduce__(self) -> tuple[Any, ...]:
         described = {
@@ -224,7 +259,7 @@ class Mesh:
             "times": self.times,
             "options": self.options,
         }
-        arrays = np.array(self.points), np.array(self.tets), np.array(self.labels)
+        arrays = np.array(self.points), np.array(self.tets), np.array(self.labels), np.array(self.edge_nodes)
         return _remade, (*arrays, self.names, self.colours, described)
 
     def __repr__(self) -> str:
@@ -261,10 +296,11 @@ def _remade(
     points: npt.ArrayLike,
     tets: npt.ArrayLike,
     labels: npt.ArrayLike,
+    edge_nodes: npt.ArrayLike,
     names: dict[int, str],
     colours: dict[int, tuple[int, int, int]],
     described: dict[str, Any],
 ) -> Mesh:
-    mesh = Mesh(points, tets, labels, names, colours)
+    mesh = Mesh(points, tets, labels, names, colours, edge_nodes)
     mesh._describe(described)
     return mesh

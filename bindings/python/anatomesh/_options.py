@@ -41,6 +41,7 @@ class Options(TypedDict, total=False):
     default_material: Union[Material, TissueKind]  # of the rest
     labels: Sequence[int]  # mesh these only, the rest is background [(): all]
     frame: Literal["lps", "ras"]  # space of the resulting mesh ["lps"]
+    order: Literal[1, 2]  # 2: quadratic tetrahedra, whose edge nodes follow the surfaces [1]
     threads: int  # [0: all cores]; the result does not depend on it
     max_memory_gib: float  # refuse a mesh that takes more by estimate [0: the memory that is free]
 

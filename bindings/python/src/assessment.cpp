@@ -76,6 +76,15 @@ py::object value(const Conformity& v) {
                {"voxel_centres_in_several_tets", value(v.voxel_centres_in_several_tets)}});
 }
 
+py::object value(const Curves& v) {
+  return dict({{"tets", value(v.tets)},
+               {"curved_tets", value(v.curved_tets)},
+               {"folded", value(v.folded)},
+               {"min_jacobian", value(v.min_jacobian)},
+               {"min_dihedral_deg", value(v.min_dihedral_deg)},
+               {"max_dihedral_deg", value(v.max_dihedral_deg)}});
+}
+
 py::object value(const OneWayDistance& v) {
   return dict({{"mean_mm", value(v.mean_mm)}, {"p95_mm", value(v.p95_mm)}, {"max_mm", value(v.max_mm)}});
 }
@@ -163,6 +172,7 @@ py::object value(const Assessment& v) {
   return dict({{"has_image", value(v.has_image)},
                {"has_distances", value(v.has_distances)},
                {"conformity", value(v.conformity)},
+               {"curves", value(v.curves)},
                {"whole", value(v.whole)},
                {"summary", value(v.summary)},
                {"tissues", value(v.tissues)}});

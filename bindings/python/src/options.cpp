@@ -210,6 +210,8 @@ const std::vector<Field>& fields() {
       field(
           "frame", [](auto& o) -> auto& { return o.frame; }),
       field(
+          "order", [](auto& o) -> auto& { return o.order; }),
+      field(
           "threads", [](auto& o) -> auto& { return o.threads; }),
       field(
           "max_memory_gib", [](auto& o) -> auto& { return o.max_memory_gib; }),

@@ -11,6 +11,7 @@
 
 #include "anatomesh/errors.h"
 #include "anatomesh/interfaces.h"
+#include "anatomesh/quadratic.h"
 #include "anatomesh/tet_mesh.h"
 #include "label_image.h"
 
@@ -57,6 +58,20 @@ std::vector<Row> rows_of(const RowsOf<Number>& array, const char* name) {
   return rows;
 }
 
+void require_sound_edge_nodes(const TetMesh& mesh) {
+  if (mesh.edge_nodes.empty()) return;
+  if (mesh.edge_nodes.size() != mesh.tets.size()) {
+    throw InvalidInput("there are edge nodes of " + std::to_string(mesh.edge_nodes.size()) + " tetrahedra for " +
+                       std::to_string(mesh.tets.size()) + "; all must have them, or none");
+  }
+  for (const std::array<VertexId, 6>& nodes : mesh.edge_nodes) {
+    const VertexId largest = std::ranges::max(nodes);
+    if (largest < mesh.points_mm.size()) continue;
+    throw InvalidInput("a tetrahedron has the edge node " + std::to_string(largest) + " of a mesh of " +
+                       std::to_string(mesh.points_mm.size()) + " points; they are numbered from 0");
+  }
+}
+
 void require_sound(const TetMesh& mesh) {
   if (mesh.labels.size() != mesh.tets.size()) {
     throw InvalidInput("there are " + std::to_string(mesh.labels.size()) + " labels for " +
@@ -68,15 +83,17 @@ void require_sound(const TetMesh& mesh) {
     throw InvalidInput("a tetrahedron has the vertex " + std::to_string(largest) + " of a mesh of " +
                        std::to_string(mesh.points_mm.size()) + " points; vertices are numbered from 0");
   }
+  require_sound_edge_nodes(mesh);
 }
 
 std::shared_ptr<TetMesh> mesh_of(const RowsOf<double>& points, const RowsOf<VertexId>& tets,
-                                 const RowsOf<Label>& labels, const std::map<Label, std::string>& names,
-                                 const std::map<Label, Colour>& colours) {
+                                 const RowsOf<Label>& labels, const RowsOf<VertexId>& edge_nodes,
+                                 const std::map<Label, std::string>& names, const std::map<Label, Colour>& colours) {
   auto mesh = std::make_shared<TetMesh>();
   mesh->points_mm = rows_of<double, Vec3>(points, "points");
   mesh->tets = rows_of<VertexId, std::array<VertexId, 4>>(tets, "tets");
   mesh->labels = rows_of<Label, Label>(labels, "labels");
+  mesh->edge_nodes = rows_of<VertexId, std::array<VertexId, 6>>(edge_nodes, "edge_nodes");
   mesh->names = label_table_of(names, colours);
   require_sound(*mesh);
   return mesh;
@@ -118,10 +135,11 @@ py::array property(const py::object& self) {
 void bind_tet_mesh(py::module_& module) {
   using namespace py::literals;
   py::class_<TetMesh, std::shared_ptr<TetMesh>>(module, "TetMesh")
-      .def(py::init(&mesh_of), "points"_a, "tets"_a, "labels"_a, "names"_a, "colours"_a)
+      .def(py::init(&mesh_of), "points"_a, "tets"_a, "labels"_a, "edge_nodes"_a, "names"_a, "colours"_a)
       .def_property_readonly("points", &property<double, &TetMesh::points_mm>)
       .def_property_readonly("tets", &property<VertexId, &TetMesh::tets>)
       .def_property_readonly("labels", &property<Label, &TetMesh::labels>)
+      .def_property_readonly("edge_nodes", &property<VertexId, &TetMesh::edge_nodes>)
       .def_property_readonly("names", [](const TetMesh& mesh) { return names_in(mesh.names); })
       .def_property_readonly("colours", [](const TetMesh& mesh) {
         py::dict colours;
@@ -129,6 +147,14 @@ void bind_tet_mesh(py::module_& module) {
           colours[py::int_(label)] = py::make_tuple(c[0], c[1], c[2]);
         return colours;
       });
+  module.def(
+      "with_order",
+      [](const TetMesh& mesh, int order, double min_dihedral_deg, double max_dihedral_deg) {
+        const py::gil_scoped_release unlocked;
+        return std::make_shared<TetMesh>(order == 1 ? linear_mesh(mesh)
+                                                    : quadratic_mesh(mesh, {min_dihedral_deg, max_dihedral_deg}));
+      },
+      "mesh"_a, "order"_a, "min_dihedral_deg"_a, "max_dihedral_deg"_a);
   module.def("interfaces_of", &interface_arrays, "mesh"_a);
 }
 
