@@ -11,10 +11,10 @@
 
 #include "anatomesh/assess.h"
 #include "anatomesh/io.h"
+#include "anatomesh/label_list.h"
 #include "apps/exit_status.h"
 #include "apps/images.h"
 #include "apps/json_report.h"
-#include "apps/label_list.h"
 #include "apps/mesh_options.h"
 #include "apps/messages.h"
 #include "apps/output_paths.h"
@@ -39,7 +39,7 @@ struct CheckRequest {
 /// Turns labels that the user did not ask for into background.
 void keep_labels(LabelImage& image, const std::vector<LabelRange>& ranges) {
   if (ranges.empty()) return;
-  const std::vector<Label> kept = select_labels(ranges, count_labels(image));
+  const std::vector<Label> kept = select_labels(ranges, count_labels(image), "--labels");
   for (Label& label : image.voxels)
     if (!std::binary_search(kept.begin(), kept.end(), label)) label = 0;
 }

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "anatomesh/io.h"
+#include "anatomesh/label_list.h"
 #include "apps/exit_status.h"
-#include "apps/label_list.h"
 #include "apps/label_names.h"
 #include "apps/text_table.h"
 

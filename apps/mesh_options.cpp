@@ -6,7 +6,6 @@
 #include <charconv>
 #include <cmath>
 #include <functional>
-#include <optional>
 #include <regex>
 #include <type_traits>
 #include <utility>
@@ -54,13 +53,6 @@ Number parse_number(std::string_view text) {
   return value;
 }
 
-/// "LABEL=VALUE"; without a label the value is meant for all others.
-std::pair<std::optional<Label>, double> parse_labelled_number(std::string_view text) {
-  const std::size_t equals = text.find('=');
-  if (equals == std::string_view::npos) return {std::nullopt, parse_number<double>(text)};
-  return {parse_label(text.substr(0, equals)), parse_number<double>(text.substr(equals + 1))};
-}
-
 /// An option whose text is handed to `take`; what is wrong with it is told with the option's name.
 CLI::Option* add_parsed(CLI::App& command, const std::string& name, const std::string& value_name,
                         const std::string& help, const std::function<void(const std::string&)>& take) {
@@ -82,51 +74,24 @@ void add_number(CLI::App& command, const std::string& name, const std::string& v
 
 /// An option that may be given several times, once a label.
 void add_labelled(CLI::App& command, const std::string& name, const std::string& value_name, const std::string& help,
-                  const std::function<void(std::optional<Label>, double)>& take) {
-  const auto take_text = [take](const std::string& text) { std::apply(take, parse_labelled_number(text)); };
-  add_parsed(command, name, value_name, help, take_text)->trigger_on_parse();
+                  MeshRequest& request, void (*take)(MeshRequest&, std::string_view)) {
+  add_parsed(command, name, value_name, help, [&request, take](const std::string& text) {
+    take(request, text);
+  })->trigger_on_parse();
 }
 
-template <class Enum>
-using Choices = std::vector<std::pair<std::string, Enum>>;
-
-template <class Enum>
-std::string names_of(const Choices<Enum>& choices) {
+template <class Choices>
+std::string names_of(const Choices& choices) {
   std::string names;
-  for (const auto& choice : choices) names += (names.empty() ? "" : "|") + choice.first;
+  for (const auto& choice : choices) names.append(names.empty() ? "" : "|").append(choice.first);
   return names;
 }
 
-/// Throws InvalidOption.
-template <class Enum>
-Enum parse_choice(std::string_view text, const Choices<Enum>& choices) {
-  for (const auto& [word, value] : choices)
-    if (text == word) return value;
-  throw InvalidOption(fmt::format("'{}' is not one of {}", text, names_of(choices)));
-}
-
-template <class Enum>
-void add_choice(CLI::App& command, const std::string& name, const std::string& help, const Choices<Enum>& choices,
-                Enum& target) {
+template <class Choices, class Enum>
+void add_choice(CLI::App& command, const std::string& name, const std::string& help, const Choices& choices,
+                Enum (*parse)(std::string_view), Enum& target) {
   add_parsed(command, name, names_of(choices), help,
-             [&target, choices](const std::string& text) { target = parse_choice(text, choices); });
-}
-
-/// --tissue LABEL=KIND
-void add_kind_option(CLI::App& command, std::map<Label, TissueKind>& kinds) {
-  const Choices<TissueKind> choices = {{"brain", TissueKind::brain},
-                                       {"ventricle", TissueKind::ventricle},
-                                       {"tumour", TissueKind::tumour},
-                                       {"vessel", TissueKind::vessel},
-                                       {"other", TissueKind::other}};
-  add_parsed(command, "--tissue", "LABEL=" + names_of(choices),
-             "elastic material of one tissue, by its kind; may be repeated",
-             [&kinds, choices](const std::string& text) {
-               const std::size_t equals = text.find('=');
-               if (equals == std::string::npos) throw InvalidOption("write it as LABEL=KIND, e.g. 3=tumour");
-               kinds[parse_label(text.substr(0, equals))] = parse_choice(text.substr(equals + 1), choices);
-             })
-      ->trigger_on_parse();
+             [&target, parse](const std::string& text) { target = parse(text); });
 }
 
 void add_lattice_options(CLI::App& command, MeshRequest& request) {
@@ -143,23 +108,16 @@ void add_lattice_options(CLI::App& command, MeshRequest& request) {
              lattice.min_size_mm);
   add_parsed(command, "--fidelity", "F", "fidelity that each tissue is refined for, 0 < F <= 1 [0.95]",
              [&request](const std::string& text) { request.fidelity = parse_number<double>(text); });
-  add_choice<FidelityStage>(command, "--fidelity-stage",
-                            "judge fidelity on the final mesh, or on the undeformed lattice as the paper does [final]",
-                            {{"final", FidelityStage::final}, {"lattice", FidelityStage::lattice}},
-                            lattice.fidelity_stage);
-  add_labelled(command, "--fidelity-label", "LABEL=F", "fidelity of one tissue; may be repeated",
-               [&lattice](std::optional<Label> label, double value) {
-                 if (!label) throw InvalidOption("write it as LABEL=F, e.g. 3=0.99");
-                 lattice.fidelity_label[*label] = value;
-               });
+  add_choice(command, "--fidelity-stage",
+             "judge fidelity on the final mesh, or on the undeformed lattice as the paper does [final]",
+             kFidelityStages, parse_fidelity_stage, lattice.fidelity_stage);
+  add_labelled(command, "--fidelity-label", "LABEL=F", "fidelity of one tissue; may be repeated", request,
+               add_fidelity_label);
   add_number(command, "--max-elements", "N",
              "most tetrahedra; the best fidelity that they allow (--fidelity is 1 unless given); 0: no limit [0]",
              lattice.max_elements);
-  add_labelled(command, "--size-label", "LABEL=MM", "largest edge inside one tissue; may be repeated",
-               [&lattice](std::optional<Label> label, double value) {
-                 if (!label) throw InvalidOption("write it as LABEL=MM, e.g. 3=2.5");
-                 lattice.size_label[*label] = value;
-               });
+  add_labelled(command, "--size-label", "LABEL=MM", "largest edge inside one tissue; may be repeated", request,
+               add_size_label);
   add_number(command, "--elements-across", "N", "tetrahedra across a tissue where it is thin; 0: not asked [0]",
              lattice.elements_across);
   add_number(command, "--drop-islands", "N", "drop parts of a tissue of fewer voxels than this; 0: none [0]",
@@ -168,19 +126,9 @@ void add_lattice_options(CLI::App& command, MeshRequest& request) {
                    "leave edges with more than two faces of a tissue's surface");
 }
 
-void add_material_option(CLI::App& command, const std::string& name, const std::string& value_name,
-                         const std::string& help, std::map<Label, double>& of_tissue, double& of_others) {
-  add_labelled(command, name, value_name, help,
-               [&](std::optional<Label> label, double value) { (label ? of_tissue[*label] : of_others) = value; });
-}
-
 void add_deform_options(CLI::App& command, DeformOptions& deform) {
-  add_choice<NonConnectivity>(command, "--non-connectivity", "thinning of the boundary's edge points [face]",
-                              {{"vertex", NonConnectivity::vertex},
-                               {"edge", NonConnectivity::edge},
-                               {"face", NonConnectivity::face},
-                               {"none", NonConnectivity::none}},
-                              deform.non_connectivity);
+  add_choice(command, "--non-connectivity", "thinning of the boundary's edge points [face]", kNonConnectivities,
+             parse_non_connectivity, deform.non_connectivity);
   add_number(command, "--iterations", "N", "deformation iterations; 0 keeps the lattice [10]", deform.iterations);
   add_number(command, "--gradation", "G",
              "mm that edges may be longer a mm farther from the surfaces, e.g. 0.5; 0: no limit [0]", deform.gradation);
@@ -188,12 +136,12 @@ void add_deform_options(CLI::App& command, DeformOptions& deform) {
 }
 
 void add_material_options(CLI::App& command, MeshRequest& request) {
-  Material& others = request.options.deform.default_material;
-  add_kind_option(command, request.kinds);
-  add_material_option(command, "--young", "[LABEL=]PA", "Young's modulus of a tissue, or of all others [3000]",
-                      request.young_modulus_pa, others.young_modulus_pa);
-  add_material_option(command, "--poisson", "[LABEL=]NU", "Poisson ratio of a tissue, or of all others [0.45]",
-                      request.poisson_ratio, others.poisson_ratio);
+  add_labelled(command, "--tissue", "LABEL=" + names_of(kTissueKinds),
+               "elastic material of one tissue, by its kind; may be repeated", request, add_tissue);
+  add_labelled(command, "--young", "[LABEL=]PA", "Young's modulus of a tissue, or of all others [3000]", request,
+               add_young);
+  add_labelled(command, "--poisson", "[LABEL=]NU", "Poisson ratio of a tissue, or of all others [0.45]", request,
+               add_poisson);
 }
 
 }  // namespace
@@ -220,30 +168,16 @@ void add_bound_options(CLI::App& command, double& min_dihedral_deg, double& max_
 }
 
 void add_frame_option(CLI::App& command, Frame& frame) {
-  add_choice<Frame>(command, "--frame", "space of the mesh [lps]", {{"lps", Frame::lps}, {"ras", Frame::ras}}, frame);
+  add_choice(command, "--frame", "space of the mesh [lps]", kFrames, parse_frame, frame);
 }
 
 void add_order_option(CLI::App& command, const std::string& help, int& order) {
-  add_choice<int>(command, "--order", help, {{"1", 1}, {"2", 2}}, order);
+  add_choice(command, "--order", help, kOrders, parse_order, order);
 }
 
 CLI::Option& add_labels_option(CLI::App& command, std::vector<LabelRange>& ranges) {
   return *add_parsed(command, "--labels", "LIST", "these labels only, e.g. 1,2,5-9; the rest is background [all]",
                      [&](const std::string& text) { ranges = parse_label_list(text); });
-}
-
-Options options_of(const MeshRequest& request) {
-  Options options = request.options;
-  DeformOptions& deform = options.deform;
-  if (options.lattice.max_elements > 0) options.lattice.fidelity = 1;
-  if (request.fidelity) options.lattice.fidelity = *request.fidelity;
-  const auto material_of = [&](Label label) -> Material& {
-    return deform.material.try_emplace(label, deform.default_material).first->second;
-  };
-  for (const auto& [label, kind] : request.kinds) deform.material[label] = default_material(kind);
-  for (const auto& [label, young] : request.young_modulus_pa) material_of(label).young_modulus_pa = young;
-  for (const auto& [label, poisson] : request.poisson_ratio) material_of(label).poisson_ratio = poisson;
-  return options;
 }
 
 void resolve_labels(Options& options, const std::vector<LabelRange>& ranges, const LabelCounts& present) {
@@ -252,7 +186,7 @@ void resolve_labels(Options& options, const std::vector<LabelRange>& ranges, con
   for (const auto& [label, size] : options.lattice.size_label) require_label(label, present, "--size-label");
   for (const auto& [label, material] : options.deform.material)
     require_label(label, present, "--tissue, --young or --poisson");
-  options.labels = select_labels(ranges, present);
+  options.labels = select_labels(ranges, present, "--labels");
 }
 
 std::string with_option_names(std::string_view message) {

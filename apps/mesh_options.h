@@ -2,27 +2,15 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <map>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "anatomesh/materials.h"
+#include "anatomesh/label_list.h"
+#include "anatomesh/mesh_request.h"
 #include "anatomesh/options.h"
-#include "apps/label_list.h"
 
 namespace anatomesh::apps {
-
-/// What the user asked for, before the image is known.
-struct MeshRequest {
-  Options options;                 ///< without labels and without the materials of single tissues
-  std::optional<double> fidelity;  ///< as given; else the default, or 1 within a budget of elements
-  std::vector<LabelRange> ranges;
-  std::map<Label, TissueKind> kinds;  ///< whose materials come from the table of the literature
-  std::map<Label, double> young_modulus_pa;
-  std::map<Label, double> poisson_ratio;
-};
 
 /// Adds an option for every member of Options, under the member's name without its unit.
 void add_mesh_options(CLI::App& command, MeshRequest& request);
@@ -38,9 +26,6 @@ void add_order_option(CLI::App& command, const std::string& help, int& order);
 
 /// --labels
 CLI::Option& add_labels_option(CLI::App& command, std::vector<LabelRange>& ranges);
-
-/// The options with the materials of single tissues put together.
-Options options_of(const MeshRequest& request);
 
 /// Fills in Options::labels. Throws InvalidOption when an option names a label that the image has not.
 void resolve_labels(Options& options, const std::vector<LabelRange>& ranges, const LabelCounts& present);

@@ -1,4 +1,4 @@
-// Labels as the user writes them, and as the image has them.
+// Labels as a user writes them, and as an image has them.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 #include "anatomesh/label_image.h"
 #include "anatomesh/types.h"
 
-namespace anatomesh::apps {
+namespace anatomesh {
 
 /// Voxels of each label of an image, without the background.
 using LabelCounts = std::map<Label, std::uint64_t>;
@@ -29,8 +29,10 @@ Label parse_label(std::string_view text);
 /// A list such as "1,2,5-9". Throws InvalidOption when it is malformed.
 std::vector<LabelRange> parse_label_list(std::string_view text);
 
-/// The labels of the image that the ranges name, ascending. Throws InvalidOption when a range names none.
-std::vector<Label> select_labels(const std::vector<LabelRange>& ranges, const LabelCounts& present);
+/// The labels of the image that the ranges name, ascending. Throws InvalidOption when a range names none; `option` is
+/// where the user wrote them.
+std::vector<Label> select_labels(const std::vector<LabelRange>& ranges, const LabelCounts& present,
+                                 std::string_view option);
 
 /// Throws InvalidOption unless the image has the label; `option` is where the user wrote it.
 void require_label(Label label, const LabelCounts& present, std::string_view option);
@@ -38,4 +40,4 @@ void require_label(Label label, const LabelCounts& present, std::string_view opt
 /// "1, 2, 3, 7, 9, 12, 13, 14 and 108 more".
 std::string shortened(const LabelCounts& labels);
 
-}  // namespace anatomesh::apps
+}  // namespace anatomesh
