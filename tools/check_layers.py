@@ -12,7 +12,7 @@ FLOORS = {"base": 0, "image": 1, "mesh": 2, "lattice": 3, "boundary": 3, "fem": 
           "pipeline": 5, "io": 6}
 
 # Floor from which a public header may be included; a header that is not named here is of floor 0 (plain types).
-PUBLIC_FLOORS = {"label_list.h": 1, "interfaces.h": 2, "assess.h": 4, "image_to_mesh.h": 5, "mesh_request.h": 5,
+PUBLIC_FLOORS = {"label_list.h": 1, "interfaces.h": 2, "quadratic.h": 2, "assess.h": 4, "image_to_mesh.h": 5, "mesh_request.h": 5,
                  "remesher.h": 5, "io.h": 6}
 
 # Folders that see nothing of the library but its public headers.

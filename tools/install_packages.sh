@@ -11,8 +11,8 @@ packages=(
   python3-dev pybind11-dev
   # to test
   libgtest-dev clang-format libbenchmark-dev valgrind pkg-config dpkg-dev file
-  # programs that are not ours, to read what we write (FEniCS is tried where python3-dolfinx is installed)
-  calculix-ccx gmsh tetgen python3-h5py python3-meshio python3-nibabel
+  # programs that are not ours, to read what we write
+  calculix-ccx gmsh tetgen python3-dolfinx python3-h5py python3-meshio python3-nibabel
   # for the demo: the images, and pictures without a display
   mricron-data python3 python3-vtk9 python3-numpy xvfb xauth libgl1-mesa-dri
   "$@"

@@ -31,6 +31,7 @@ OTHER_VALUES = {
     "default_material": {"young_modulus_pa": 2000.0, "poisson_ratio": 0.3},
     "labels": [1, 7],
     "frame": "ras",
+    "order": 2,
     "threads": 1,
     "max_memory_gib": 4.0,
 }
