@@ -3,6 +3,7 @@
 
 #include "anatomesh/errors.h"
 #include "anatomesh/io.h"
+#include "anatomesh/quadratic.h"
 
 namespace anatomesh::simulation {
 
@@ -13,7 +14,7 @@ LabelImageLoader::LabelImageLoader()
 
 TetMesh LabelImageLoader::makeMesh() {
   if (d_filename.getValue().empty()) throw InvalidInput("filename is empty; it must name a mesh file");
-  TetMesh mesh = read_mesh(d_filename.getFullPath());
+  const TetMesh mesh = linear_mesh(read_mesh(d_filename.getFullPath()));  // force fields take linear ones
   msg_info() << mesh.tets.size() << " tetrahedra, " << mesh.points_mm.size() << " vertices";
   return mesh;
 }
