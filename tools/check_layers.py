@@ -32,7 +32,7 @@ FENCES = [
     ("CLI11", re.compile(r"^CLI/"), ("apps", "benchmarks")),
     ("JSON", re.compile(r"^nlohmann/"), ("apps", "benchmarks")),
     ("pybind11", re.compile(r"^pybind11/"), ("bindings/python",)),
-    ("SOFA", re.compile(r"^sofa/"), ("plugins/sofa",)),
+    ("SOFA", re.compile(r"^sofa/"), ("plugins/sofa", "benchmarks/sofa_steps")),
     ("fmt", re.compile(r"^(fmt|spdlog)/"), ("apps",)),
 ]
 
