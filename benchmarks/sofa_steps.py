@@ -27,7 +27,8 @@ PAGE = ROOT / "docs/sofa.md"
 BEGIN, END = "<!-- steps:begin -->", "<!-- steps:end -->"
 
 UNGUARDED = ["--min-dihedral", "0", "--max-dihedral", "180", "--min-mean-ratio", "0"]
-TIME_STEPS_S = (0.02, 0.04, 0.08, 0.16, 0.32)
+BCC_SIZES_MM = [10 + 0.5 * n for n in range(21)]
+TIME_STEPS_S = (0.02, 0.04, 0.08, 0.16)
 SAME_COUNT = 0.05
 MOST_RUNS = 10
 MATERIALS = 'tissue="1=brain 3=tumour" young="2=500" poisson="2=0.45"'
@@ -41,8 +42,17 @@ def run(*command):
     return done.stdout
 
 
-def mesh_ours(program, tets, options, mesh):
-    run(program, "mesh", IMAGE, "-o", mesh, "--quiet", "--max-elements", tets, *options)
+def mesh_ours(program, mesh, *options):
+    run(program, "mesh", IMAGE, "-o", mesh, "--quiet", *options)
+
+
+def mesh_unguarded(program, wanted, mesh):
+    """The mesh without guard of the lattice whose number of tetrahedra comes nearest."""
+    counts = {}
+    for size in BCC_SIZES_MM:
+        mesh_ours(program, mesh, "--bcc-size", size, *UNGUARDED)
+        counts[size] = judge(program, mesh)["tets"]
+    mesh_ours(program, mesh, "--bcc-size", min(counts, key=lambda size: off(counts[size], wanted)), *UNGUARDED)
 
 
 def mesh_with_cgal(cgal, wanted, mesh):
@@ -78,7 +88,7 @@ def scene_of(mesh, time_step_s, folder):
 
 def simulate(driver, mesh, time_step_s, steps, folder):
     lines = run(driver, scene_of(mesh, time_step_s, folder), "--steps", steps)
-    return json.loads(lines.strip().splitlines()[-1])
+    return json.loads(next(line for line in lines.splitlines() if line.startswith("{")))
 
 
 def cell(row):
@@ -107,17 +117,17 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/ci")
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "build/sofa_steps")
-    parser.add_argument("--tets", type=int, default=15000, help="budget of our meshes [15000]")
-    parser.add_argument("--steps", type=int, default=50, help="of each run [50]")
+    parser.add_argument("--tets", type=int, default=15000, help="budget of our mesh [15000]")
+    parser.add_argument("--steps", type=int, default=40, help="of each run [40]")
     arguments = parser.parse_args()
     arguments.out.mkdir(parents=True, exist_ok=True)
     program, driver, cgal = (arguments.build / "bin" / name for name in ("anatomesh", "sofa_steps", "cgal_mesh_3"))
 
     meshes = {"ours": "Anatomesh", "unguarded": "Anatomesh, `--min-dihedral 0`", "cgal": "CGAL"}
     paths = {name: arguments.out / f"{name}.vtu" for name in meshes}
-    mesh_ours(program, arguments.tets, [], paths["ours"])
+    mesh_ours(program, paths["ours"], "--max-elements", arguments.tets)
     wanted = judge(program, paths["ours"])["tets"]
-    mesh_ours(program, arguments.tets, UNGUARDED, paths["unguarded"])
+    mesh_unguarded(program, wanted, paths["unguarded"])
     mesh_with_cgal(cgal, wanted, paths["cgal"])
 
     rows = []
