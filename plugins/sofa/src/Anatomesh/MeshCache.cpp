@@ -85,10 +85,10 @@ std::string content_hash(const LabelImage& image, const Options& options) {
   Hash hash;
   hash.add(std::string(version()));
   add_image(hash, image);
-  const auto& [lattice, deform, labels, frame, threads, max_memory] = options;
+  const auto& [lattice, deform, labels, frame, order, threads, max_memory] = options;
   add_lattice(hash, lattice);
   add_deform(hash, deform);
-  hash.add(labels, frame);  // threads and memory change nothing
+  hash.add(labels, frame, order);  // threads and memory change nothing
   return hash.digits();
 }
 
